@@ -94,9 +94,22 @@ void sync_file(const std::string& path) {
   if (!system_file::sync(file.get())) fail(path, "cannot be synced", errno);
 }
 
+FolderLock::~FolderLock() {
+  // Closing is not enough: a process that was forked meanwhile has the descriptor too. It does not own the lock.
+  if (folder_ && process_ == ::getpid()) ::flock(folder_->get(), LOCK_UN);
+}
+
 bool FolderLock::take(const std::string& path) {
   folder_.emplace(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  return ::flock(folder_->get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  if (!folder_->is_open()) fail(path, "cannot be opened", errno);
+  process_ = ::getpid();
+  if (::flock(folder_->get(), LOCK_EX | LOCK_NB) == 0) return true;
+  const int code = errno;
+  if (code == EWOULDBLOCK) return false;
+  // What file systems without locks say; EBADF: one that locks for writing what is open for writing alone.
+  for (const int no_locks : {ENOLCK, EOPNOTSUPP, ENOSYS, EINVAL, EBADF})
+    if (code == no_locks) return true;
+  fail(path, "cannot be locked", code);
 }
 
 void rename_file(const std::string& from, const std::string& to) {

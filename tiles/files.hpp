@@ -59,12 +59,16 @@ void remove_folder(const std::string& path);
 class FolderLock {
  public:
   FolderLock() = default;
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
   /// False if another one, of this process or another, has the folder. File systems that know no locks of folders (some
-  /// of those shared by machines) do not tell.
+  /// of those shared by machines) do not tell. \throws io::FileError
   [[nodiscard]] bool take(const std::string& path);
 
  private:
   std::optional<io::detail::system_file::Descriptor> folder_;
+  std::int64_t process_ = 0;  // that has taken it
 };
 
 /// A file in memory as its pages are read. Must not become shorter meanwhile. Small ones are read at once: a process

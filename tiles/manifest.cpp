@@ -55,8 +55,10 @@ NodeSums sums_of(const Json& json) {
   sums.hull_edges = count_of<std::uint64_t>(json.at("hull_edges"));
   sums.certified_edges = count_of<std::uint64_t>(json.at("certified_edges"));
   const Json& dimension = json.at("dimension");
-  require(dimension == -1 || dimension == 0 || dimension == 1 || dimension == 2, "a dimension is from -1 to 2");
+  // 2^64 - 1 would equal -1.
+  require(dimension.is_number_unsigned() ? dimension <= 2U : dimension == -1, "a dimension is from -1 to 2");
   sums.dimension = dimension;
+  require(sums.dimension == 2 || sums.triangles == 0, "there are triangles, and the dimension is not 2");
   sums.hash = hash_from_string(json.at("hash"));
   return sums;
 }

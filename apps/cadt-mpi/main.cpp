@@ -44,8 +44,10 @@ void parse(int argc, char** argv, bool print_help, RankAction& action) {
     return;
   } catch (const CLI::ParseError& e) {
     const auto chosen = app.get_subcommands();
-    const std::string what =
-        chosen.empty() ? explain(e, app, "cadt-mpi") : explain(e, *chosen.front(), "cadt-mpi tiles");
+    const bool no_command = chosen.empty() && argc > 1 && argv[1][0] != '-';
+    const std::string what = no_command       ? explain_command(app, argv[1])
+                             : chosen.empty() ? explain(e, app, "cadt-mpi")
+                                              : explain(e, *chosen.front(), "cadt-mpi tiles");
     throw Failure(exit_usage, fmt::format("{}; see: cadt-mpi tiles --help", what));
   }
   if (!action) throw Failure(exit_usage, "a command is missing; see: cadt-mpi --help");

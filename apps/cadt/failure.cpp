@@ -96,9 +96,10 @@ int report_known_exception() {
   } catch (const std::length_error&) {  // a container that no memory could hold
     return out_of_host_memory();
   } catch (const std::system_error& e) {
-    // A thread that cannot be started means a lack of memory or of process slots.
-    if (e.code() == std::errc::resource_unavailable_try_again || e.code() == std::errc::not_enough_memory) {
-      return out_of_host_memory();
+    if (e.code() == std::errc::not_enough_memory) return out_of_host_memory();
+    if (e.code() == std::errc::resource_unavailable_try_again) {
+      return error(exit_memory, "the system starts no more threads",
+                   "End other threads or processes, raise the limit on them (ulimit -u), or use fewer: --threads.");
     }
     return error(exit_internal, e.what(),
                  "This is a defect of cadt: please report it with the command line and the input.");

@@ -2,6 +2,7 @@
 #include "help.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -87,10 +88,21 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
   return best != names.end() && 3 * distance(*best) <= word.size() ? fmt::format("; did you mean {}?", *best) : "";
 }
 
+std::string explain_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string near = suggestion(word, names);
+  return fmt::format("there is no command '{}'{}", word,
+                     near.empty() ? fmt::format("; there are: {}", fmt::join(names, ", ")) : near);
+}
+
 std::string explain(const CLI::ParseError& error, const CLI::App& command, const std::string& name) {
   const std::vector<std::string> words = command.remaining(true);
   const auto option = std::ranges::find_if(words, [](const std::string& w) { return w.size() > 1 && w[0] == '-'; });
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || option == words.end()) return error.what();
+  const bool may_come_of_it = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  if (!may_come_of_it || option == words.end()) return error.what();
   std::vector<std::string> names;
   for (const CLI::Option* known : command.get_options())
     for (const std::string& of : known->get_lnames()) names.push_back("--" + of);

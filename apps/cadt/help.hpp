@@ -21,6 +21,8 @@ class HelpFormatter : public CLI::Formatter {
 
 /// "; did you mean NAME?" of the name that takes the fewest changes of a letter, if it is near; else nothing.
 [[nodiscard]] std::string suggestion(std::string_view word, const std::vector<std::string>& names);
+/// What is wrong with a word that is no command of the program, and which one may be meant.
+[[nodiscard]] std::string explain_command(const CLI::App& app, const std::string& word);
 /// What is wrong with the words of a command: the option that it does not have, and which one may be meant.
 [[nodiscard]] std::string explain(const CLI::ParseError& error, const CLI::App& command, const std::string& name);
 

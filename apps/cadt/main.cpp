@@ -9,14 +9,14 @@
 #include <cadt/version.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <system_error>
 
 namespace {
 
@@ -44,15 +44,13 @@ void explain_first_word(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw Failure(exit_usage, "a command is missing; see: cadt --help");
   const std::string word = argv[1];
   if (!word.empty() && word[0] == '-') return;
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == word) return;
-    names.push_back(command->get_name());
-  }
-  const std::string near = suggestion(word, names);
-  const std::string all =
-      fmt::format("; there are: {}. To triangulate a file: cadt triangulate {}", fmt::join(names, ", "), word);
-  throw Failure(exit_usage, fmt::format("there is no command '{}'{}", word, near.empty() ? all : near));
+  if (!app.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; }).empty()) return;
+  std::string text = explain_command(app, word);
+  std::error_code code;
+  const bool near = text.ends_with('?');
+  if (!near || std::filesystem::is_regular_file(word, code))
+    text += fmt::format("{} To triangulate a file: cadt triangulate {}", near ? "" : ".", word);
+  throw Failure(exit_usage, text);
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -112,8 +112,10 @@ void require_outside(const std::string& path, const std::string& folder, std::st
   const fs::path from_root = fs::absolute(path, code);  // so that all folders above are seen
   fs::path at = fs::weakly_canonical(from_root, code);
   if (code) at = from_root.lexically_normal();
+  fs::path kept = fs::weakly_canonical(fs::absolute(folder, code), code);  // it may not be there yet
+  if (!kept.has_filename()) kept = kept.parent_path();
   for (; !at.empty(); at = at.parent_path()) {
-    if (fs::equivalent(at, folder, code)) {
+    if (at == kept || fs::equivalent(at, folder, code)) {
       throw Failure(exit_usage, fmt::format("{}: this is in {}, {}, which would be lost; name an output outside of it",
                                             path, folder, what));
     }

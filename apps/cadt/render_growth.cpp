@@ -282,6 +282,7 @@ void check_growth(const GrowthOptions& options, const std::string& output, const
     if (output == "-")
       throw Failure(exit_usage,
                     "-o -: standard output has the counters of the growing mesh; name a file for the picture");
+    require_format(output, "", {"png"}, "");
     (void)plan_outputs({output}, {}, {"png"}, inputs);
     return;
   }

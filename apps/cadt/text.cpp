@@ -2,7 +2,6 @@
 #include "text.hpp"
 
 #include "failure.hpp"
-#include "tiles/machine.hpp"
 
 #include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
 #include <fmt/format.h>
@@ -39,8 +38,6 @@ std::optional<std::uint64_t> whole(double value) {
 }
 
 }  // namespace
-
-std::string human_bytes(std::uint64_t bytes) { return tiles::human_bytes(bytes); }
 
 std::optional<double> parse_number(std::string_view text) {
   const auto parsed = number_in_front(text);

@@ -2,6 +2,8 @@
 // Numbers with units, lists, tables.
 #pragma once
 
+#include "tiles/machine.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,8 +14,7 @@
 
 namespace cadt::cli {
 
-/// "4.0 GiB"; below 1024 "512 bytes".
-[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+using tiles::human_bytes;
 
 /// The whole text as a number that is finite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);

@@ -5,6 +5,7 @@
 #include "generated_set.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
+#include "system.hpp"
 #include "text.hpp"
 #include "tiles/files.hpp"
 #include "tiles/mesh_directory.hpp"
@@ -159,11 +160,11 @@ std::string tiles_summary(const tiles::RunResult& r) {
 void write_tiles_reports(const TilesCommand& c, const tiles::PointSource& source, const tiles::RunOptions& options,
                          const tiles::RunResult& result) {
   const std::string report = tiles::report_json(result, options, source.names());
-  // A directory that was complete is left as it is.
+  // A directory that was complete is left as it is, also where nothing can be written.
   const std::string path = c.output + "/run.json";
   std::error_code code;
   const bool resumed = std::ranges::all_of(result.nodes, [](const auto& node) { return node.resumed; });
-  if (!c.output.empty() && !(resumed && std::filesystem::exists(path, code))) {
+  if (!c.output.empty() && !(resumed && (std::filesystem::exists(path, code) || !may_write(c.output)))) {
     const InPhase phase(Phase::writing);
     tiles::replace_text(path, report);
   }

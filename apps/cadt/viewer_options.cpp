@@ -124,9 +124,10 @@ void parse_size(const std::string& text, int& width, int& height, int& most_heig
 std::optional<viewer::View> parse_camera(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::array<double, 3> number{0, 0, 0};
-  if (!parse_numbers(text, number) || !(number[2] > 0))
+  if (!parse_numbers(text, number) || !(number[2] >= viewer::Camera::least_magnification))
     throw Failure(exit_usage,
-                  fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
+                  fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last at least {}", text,
+                              viewer::Camera::least_magnification));
   return viewer::View{number[0], number[1], number[2]};
 }
 

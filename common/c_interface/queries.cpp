@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries, and meshes in arrays of the caller's. Who asks for a count alone hears what the call would refuse.
+// Queries, and meshes in arrays of the caller's. Who asks for a count alone hears which sizes, options and grids the
+// call would refuse; points are not looked at.
 #include "common/c_interface/convert.hpp"
 #include "common/queries/call.hpp"
 #include "common/queries/interpolate.hpp"

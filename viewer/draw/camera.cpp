@@ -108,7 +108,7 @@ void Camera::limit() {
     const double pixels = ulp * first_[k] * fitted_[k];
     if (pixels > 0) most = std::min(most, 0.1 / pixels);
   }
-  magnification_ = std::clamp(magnification_, 1.0 / 16, std::max(1.0, most));
+  magnification_ = std::clamp(magnification_, least_magnification, std::max(1.0, most));
 }
 
 void Camera::pan(double dx, double dy) {

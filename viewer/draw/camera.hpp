@@ -37,7 +37,8 @@ class Camera {
   void resize(int width, int height);
   /// Moves what is seen by so many pixels, x right and y down; the middle stays within the box.
   void pan(double dx, double dy);
-  /// Makes everything `factor` times as large; the place at pixel (x, y) stays. Between 1/16 of the fitted view and the
+  static constexpr double least_magnification = 1.0 / 16;
+  /// Makes everything `factor` times as large; the place at pixel (x, y) stays. Between least_magnification and the
   /// size at which coordinates differ by a tenth of a pixel.
   void zoom(double factor, double x, double y);
   /// Moves the place to the middle, also one outside of the box.

@@ -6,6 +6,8 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import os
+import threading
+import weakref
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -71,7 +73,7 @@ class _Report:
     value: Any
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Target:
     """Where nodes are made, and what becomes of them there."""
 
@@ -85,6 +87,18 @@ class _Target:
             return None
         path, content = self.store
         return _cadt.TileStore(path, tree._tree, self.tile_points, content, create)
+
+    def joined_store(self, tree: Tree) -> _cadt.TileStore | None:
+        """That of this process, which looks once whether it sees the directory of the run: it takes a long time for
+        many nodes."""
+        with _joining:
+            if self not in _joined:
+                _joined[self] = self.open_store(tree, create=False)
+            return _joined[self]
+
+
+_joining = threading.Lock()
+_joined: weakref.WeakKeyDictionary[_Target, _cadt.TileStore | None] = weakref.WeakKeyDictionary()
 
 
 def triangulate(
@@ -172,16 +186,19 @@ def triangulate(
     store = None if path is None else (path, _sum([look.content for look in looks]))
     target = _Target(where, tile_points, consumer, store)
     directory = target.open_store(tree, create=True)
-    reports = tasks.nodes(pieces, looks, tree, target)
-    sums = sum((report.sums for report in reports), Sums())
-    check_complete(sums)
-    if sums.points != int(tree.counts[-1]):
-        raise InternalError(f"the leaves have {sums.points} points, and the tree {int(tree.counts[-1])}")
-    if directory is not None:
-        directory.finish()  # which checks the links too
-    else:
-        told = np.concatenate([report.told for report in reports])
-        apply_links({node: report.links for node, report in enumerate(reports)}, told)
+    try:
+        reports = tasks.nodes(pieces, looks, tree, target)
+        sums = sum((report.sums for report in reports), Sums())
+        check_complete(sums)
+        if sums.points != int(tree.counts[-1]):
+            raise InternalError(f"the leaves have {sums.points} points, and the tree {int(tree.counts[-1])}")
+        if directory is not None:
+            directory.finish()  # which checks the links too
+        else:
+            told = np.concatenate([report.told for report in reports])
+            apply_links({node: report.links for node, report in enumerate(reports)}, told)
+    finally:
+        del directory  # which no other run may write as long as it is here, or in the traceback of an error
     return Mesh(
         tree,
         [report.value for report in reports],
@@ -310,7 +327,7 @@ def _join(target: _Target, tree: Tree, node: int, opens: list[Open]) -> tuple[Op
 
 
 def _finish(target: _Target, tree: Tree, made: _cadt.TileNode) -> tuple[Open, _Report]:
-    directory = target.open_store(tree, create=False)
+    directory = target.joined_store(tree)
     if directory is not None:
         directory.write(made)
     value = None if target.consumer is None else target.consumer(Part(made))
@@ -333,7 +350,11 @@ def _here(target: _Target) -> Where:
 
 
 def _from_root(path: str | os.PathLike[str]) -> str:
-    return os.path.join(os.getcwd(), os.fspath(path))
+    name = os.fspath(path)
+    try:
+        return name if os.path.isabs(name) else os.path.join(os.getcwd(), name)
+    except OSError as error:
+        raise FileError(f"{name}: the working directory is not there any more: {error.strerror}", name) from error
 
 
 def _union(bounds: np.ndarray) -> np.ndarray:

@@ -121,7 +121,10 @@ def triangulate(
         path = None if out is None else os.fspath(out)
         _require_equal(group, tile_points, path, consumer is None)
         run = _Run(group, xy, tile_points)
-        return run.finish(_share(group, where, tile_points), path, consumer)
+        try:
+            return run.finish(_share(group, where, tile_points), path, consumer)
+        finally:
+            run.store = None  # no other run may write the directory as long as it is in the traceback of an error
     finally:
         private.Free()
 
@@ -131,6 +134,7 @@ class _Run:
 
     def __init__(self, group: Group, xy: Any, tile_points: int) -> None:
         self.group, self.tile_points = group, tile_points
+        self.store: _cadt.TileStore | None = None  # of the directory
         self.points: np.ndarray = group.together(lambda: normalized(xy))
         counts = group.comm.allgather(len(self.points))
         self.ends = np.cumsum(counts)
@@ -213,11 +217,10 @@ class _Run:
 
     def finish(self, where: Where, out: str | None, consumer: Callable[[Part], Any] | None) -> Mesh:
         group, tree, owners = self.group, self.tree, self.owners
-        store: _cadt.TileStore | None = None
         if out is not None:
             plan = (out, tree._tree, self.tile_points, self.content())
-            begun = group.together(lambda: _cadt.TileStore(*plan, True) if group.rank == 0 else None)
-            store = group.together(lambda: begun or _cadt.TileStore(*plan, False))
+            self.store = group.together(lambda: _cadt.TileStore(*plan, True) if group.rank == 0 else None)
+            self.store = group.together(lambda: self.store or _cadt.TileStore(*plan, False))
         take = self.shuffle()
         opens: dict[int, Open] = {}
         links: dict[int, np.ndarray] = {}
@@ -235,12 +238,12 @@ class _Run:
             else:
                 made = where.join([opens.pop(left), opens.pop(right)], tree.boxes[node], node)
                 told.append(made.messages)
-            if store is not None:
-                store.write(made)
+            if self.store is not None:
+                self.store.write(made)
             part = Part(made)
             if consumer is not None:
                 values[node] = consumer(part)
-            elif store is None:
+            elif self.store is None:
                 parts[node] = part
             links[node] = part.links if node in parts else made.links  # a copy: that of a consumer's part is its own
             triangles[node] = len(part.triangles)
@@ -263,8 +266,8 @@ class _Run:
         check_complete(sums)
         if sums.points != int(self.ends[-1]):
             raise InternalError(f"the leaves have {sums.points} points, and the ranks {int(self.ends[-1])}")
-        if store is not None:
-            group.together(lambda: store.finish() if group.rank == 0 else None)
+        if (store := self.store) is not None:
+            group.together(store.finish if group.rank == 0 else lambda: None)
         bases = np.concatenate([np.zeros(1, np.uint64), np.cumsum(group.sum(triangles), dtype=np.uint64)])
         return Mesh(tree, owners, parts, values, self.first, bases, sums, mesh_hash(sums))
 

@@ -113,7 +113,8 @@ def command(words: Sequence[str]) -> int:
             write_out(_options.main_help())
             return errors.EXIT_DONE if words else errors.EXIT_USAGE
         if words[0] not in _options.SUMMARIES:
-            raise errors.UsageError(f"there is no command '{words[0]}'; there are: {', '.join(_options.SUMMARIES)}")
+            near = _options.suggestion(words[0], _options.SUMMARIES) or f"; there are: {', '.join(_options.SUMMARIES)}"
+            raise errors.UsageError(f"there is no command '{words[0]}'{near}")
         return run(words[0], words[1:])
     except SystemExit as done:  # --help
         return int(done.code or 0)

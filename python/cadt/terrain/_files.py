@@ -49,6 +49,14 @@ def rasterio_errors() -> tuple[type[Exception], ...]:
     return RasterioError, CPLE_BaseError
 
 
+def from_root(path: str, file: str) -> str:
+    """The name `file` from the root on; that of a file that messages call `path`."""
+    try:
+        return file if os.path.isabs(file) else os.path.join(os.getcwd(), file)
+    except OSError as error:
+        raise FileError(path, f"the working directory is not there any more: {why(error)}") from error
+
+
 def check_input(path: str) -> None:
     """Raises FileError if there is no file of this name to be read."""
     try:
@@ -70,6 +78,7 @@ def check_output(path: str, formats: Sequence[str], inputs: Sequence[str]) -> st
     if suffix not in formats:
         said = f"unknown suffix '.{suffix}'" if suffix else "no suffix"
         raise UsageError(f"{path}: {said}; end the output's name in one of: {', '.join(formats)}")
+    from_root(path, path)
     if os.path.isdir(path):
         raise FileError(path, "is a folder; name a file in it")
     for name in inputs:

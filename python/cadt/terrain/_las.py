@@ -92,7 +92,9 @@ def _check_chunks(path: str, header: Any) -> None:
     points, sizes = sum(n for n, _ in chunks), sum(n for _, n in chunks)
     most = max((n for n, _ in chunks), default=0)
     if most * size > MOST_OF_CHUNK:
-        raise FileError(path, f"damaged: a chunk of {most} points")
+        raise FileError(
+            path, f"a chunk of {most} points needs {most * size / 2**30:.1f} GiB: write it again with smaller chunks"
+        )
     if sizes > length:
         raise FileError(path, f"truncated: its chunks have {sizes} bytes")
     if points < header.point_count:

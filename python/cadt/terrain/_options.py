@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import difflib
+import itertools
+from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 from ._say import write_out
@@ -228,9 +230,21 @@ def parser_of(command: str) -> argparse.ArgumentParser:
     return parser
 
 
+def suggestion(word: str, names: Iterable[str]) -> str:
+    """Which of the names may be meant; nothing if none is near."""
+    near = difflib.get_close_matches(word, names, 1, 0.7)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
 def parse(command: str, words: Sequence[str]) -> argparse.Namespace:
     """The options; `inputs` and `output` are told apart."""
-    options = parser_of(command).parse_intermixed_args(words)
+    parser = parser_of(command)
+    known = [name for action in parser._actions for name in action.option_strings]
+    for word in itertools.takewhile(lambda word: word != "--", words):  # before what is missing
+        name = word.split("=")[0]
+        if name.startswith("--") and name not in known:
+            parser.error(f"cadt {command} has no option {name}{suggestion(name, known)}")
+    options = parser.parse_intermixed_args(words)
     files = list(options.files)
     if options.output is None:
         if len(files) < 2:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import Room, check_utf8, complete_file, suffix_of, why
+from ._files import Room, check_utf8, complete_file, from_root, suffix_of, why
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def name_for_ogr(path: str, file: str | None = None) -> str:
         There is none: pyogrio takes what is after `!` or `;`, and names with tabs and line breaks, for another file.
     """
     check_utf8(path)
-    name = os.path.join(os.getcwd(), path if file is None else file)  # none of a URL's parts is at its beginning
+    name = from_root(path, path if file is None else file)  # none of a URL's parts is at its beginning
     if name.startswith("//"):
         name = "/" + name.lstrip("/")
     try:
@@ -144,6 +144,8 @@ def only_layer(ogr: Any, path: str, what: str) -> Layer:
                 count, where = true_count, "1 = 1"
     except errors_of(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
+    if count < 0:
+        raise FileError(path, f"damaged: it promises {count} features")
     if count > os.path.getsize(path):  # a feature takes more than a byte
         raise FileError(path, f"truncated: it has no room for the {count} features that it promises")
     return Layer(file, names[0], count, where, info["crs"], [str(name) for name in info["fields"]])
@@ -289,7 +291,11 @@ def _is_complete(ogr: Any, name: str, suffix: str, count: int) -> bool:
     """Whether the last feature is in a file, and what follows it: GDAL does not say of all formats that a disk was full."""
     try:
         _, _, last, _ = ogr.raw.read(name, columns=[], skip_features=max(count - 1, 0), max_features=1)
-    except ValueError:  # fewer
+        if suffix == "gpkg":  # the spatial index is made when all features are there
+            sql = "SELECT 1 FROM gpkg_extensions WHERE extension_name = 'gpkg_rtree_index'"
+            if len(ogr.raw.read(name, sql=sql)[3][0]) == 0:
+                return False
+    except (ValueError, ogr.errors.DataLayerError):  # there are fewer, or there is no such table
         return False
     with open(name, "rb") as file:
         file.seek(max(os.path.getsize(name) - 64, 0))

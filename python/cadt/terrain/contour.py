@@ -59,7 +59,8 @@ def contour_lines(
     level = np.floor((z - base) / interval)
     level += base + (level + 1) * interval <= z  # the division is rounded
     level -= base + level * interval > z
-    if not np.abs(level).max() < 1 << 50:
+    apart = 2 * np.spacing(np.abs(base + level * interval).max()) <= interval  # whatever is rounded
+    if not (np.abs(level).max() < 1 << 50 and apart):
         raise UsageError(f"--base {base:g} is too many steps of {interval:g} from the heights for lines to differ")
     low, high = level[corners].min(axis=1), level[corners].max(axis=1)
     count = (high - low).astype(np.int64)

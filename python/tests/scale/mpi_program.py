@@ -6,6 +6,7 @@ usage: mpirun -n N python mpi_program.py FOLDER
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
@@ -115,10 +116,27 @@ def directory(comm, folder: pathlib.Path) -> str:
     assert [node["base"] for node in manifest["nodes"]] == mesh.bases[:-1].tolist()
     _fails(comm, cadt.ResumeError, lambda: cadt.mpi.triangulate(comm, share(comm, xy), tile_points=25_000, out=out))
     _fails(comm, cadt.FileError, lambda: cadt.mpi.triangulate(comm, share(comm, xy), out=folder / "no" / "mesh.cadt"))
+    _failed_runs(comm, folder, xy)
     if comm.size > 1:
         _other_directories(comm, folder, xy)
     comm.Barrier()
     return digest(out)
+
+
+def _failed_runs(comm, folder: pathlib.Path, xy: np.ndarray) -> None:
+    """They leave the directory to others, though their error is kept."""
+
+    def refuse(part: cadt.tiles.Part) -> None:
+        raise KeyError
+
+    out = folder / "failed.cadt"
+    kept = _fails(comm, KeyError, lambda: cadt.mpi.triangulate(comm, share(comm, xy), consumer=refuse, out=out))
+    comm.Barrier()
+    if comm.rank == 0:
+        locked = os.open(out, os.O_RDONLY)
+        fcntl.flock(locked, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.close(locked)
+    assert kept.__traceback__ is not None
 
 
 def _other_directories(comm, folder: pathlib.Path, xy: np.ndarray) -> None:

@@ -354,12 +354,7 @@ def test_bad_arguments(client: dask.distributed.Client, tmp_path: pathlib.Path) 
         cadt.dask.triangulate([file], client, out=tmp_path / "no" / "mesh.cadt")
 
 
-def test_without_a_cluster(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_client() -> None:
-        raise ValueError
-
-    monkeypatch.setattr(dask.distributed, "default_client", no_client)
-    monkeypatch.setattr("distributed.default_client", no_client)
+def test_without_a_cluster(tmp_path: pathlib.Path, no_client: None) -> None:
     xy = families()["lattice"]
     require_mesh(cadt.dask.triangulate([save(tmp_path / "xy.npy", xy)], tile_points=50), xy)
 

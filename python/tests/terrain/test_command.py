@@ -64,7 +64,11 @@ def test_without_words():
 
 
 def test_a_wrong_command(cadt_terrain):
-    cadt_terrain("rasters", code=2, says="there is no command 'rasters'; there are: raster, contour, tin")
+    cadt_terrain("rastr", code=2, says="there is no command 'rastr'; did you mean raster?")
+    cadt_terrain("raster", "a.laz", "o.tif", "--rse", "1", code=2, says="has no option --rse; did you mean --res?; see:")
+    cadt_terrain("contour", "a.laz", "--bogus=1", code=2, says="cadt contour has no option --bogus; see: cadt contour")
+    cadt_terrain("contour", "a.laz", "o.fgb", code=2, says="--interval")
+    cadt_terrain("mesh", code=2, says="there is no command 'mesh'; there are: raster, contour, tin")
 
 
 def test_progress_on_a_terminal_alone(las, tmp_path, cadt_terrain):

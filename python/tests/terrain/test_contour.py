@@ -104,6 +104,8 @@ def test_interval_base_and_long_edges():
     assert terrain.contour_lines(mesh, z, 4.0, base=1.0)[2].tolist() == [1.0, 5.0, 9.0]
     assert len(terrain.contour_lines(mesh, z, 4.0, max_edge=9.0)[2]) == 0
     assert len(terrain.contour_lines(mesh, np.full(4, 5.0), 4.0)[2]) == 0
+    with pytest.raises(terrain.UsageError, match="--base 1e.16 is too many steps of"):  # heights are 2 apart there
+        terrain.contour_lines(mesh, z + 1e16, 1.0, base=1e16)
     with pytest.raises(terrain.UsageError, match="--base 1e.17 is too many steps of"):
         terrain.contour_lines(mesh, z, 1.0, 1e17)
     with pytest.raises(terrain.UsageError, match="take a larger one"):

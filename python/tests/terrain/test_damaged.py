@@ -49,7 +49,7 @@ def changed(las, tmp_path):
         ("file", 243, "<I", 1000, "truncated: 1000 records behind the points, room for"),
         ("file", 247, "<Q", 10**12, "truncated: at most 50000 points of the 1000000000000 that"),
         ("record", 12, "<I", 0, "(damaged|truncated): "),
-        ("record", 12, "<I", 1 << 26, "damaged: a chunk of 67108864 points"),
+        ("record", 12, "<I", 1 << 26, "a chunk of 67108864 points needs 1.9 GiB: write it again with smaller"),
         ("record", 36, "<H", 40, "damaged: a point has 30 bytes or 40"),
         ("table", 4, "<I", 1000, "damaged: it has no room for its 1000 chunks"),
         ("points", 0, "<q", -1, "damaged: "),
@@ -132,12 +132,22 @@ def test_truncated_flatgeobuf(tmp_path):
         refused(cut, r"cut\.fgb: (cannot be read|truncated)")
 
 
-def test_counts_that_no_file_holds(tmp_path):
+@pytest.mark.parametrize(
+    ("count", "says"),
+    [(1 << 20, "truncated: it has no room for the 1048576 features"), (0xFF000000, "damaged: it promises -16777216")],
+)
+def test_counts_that_no_file_holds(tmp_path, count, says):
+    pytest.importorskip("geopandas", reason="geopandas is not installed: scripts/python_env terrain")
+    cloud = terrain.read_cloud([str(points(tmp_path / "whole.fgb", 9))])
     path = points(tmp_path / "p.fgb", 301, SPATIAL_INDEX="NO")
-    data = path.read_bytes()
-    assert data.count(struct.pack("<Q", 301)) == 1
-    path.write_bytes(data.replace(struct.pack("<Q", 301), struct.pack("<Q", 1 << 20)))
-    refused(path, r"p\.fgb: truncated: it has no room for the 1048576 features")
+    banks = pathlib.Path(lines(tmp_path / "l.fgb", 301, SPATIAL_INDEX="NO"))
+    for file in (path, banks):
+        data = file.read_bytes()
+        assert data.count(struct.pack("<Q", 301)) == 1
+        file.write_bytes(data.replace(struct.pack("<Q", 301), struct.pack("<Q", count)))
+    refused(path, rf"p\.fgb: {says}")
+    with pytest.raises(terrain.FileError, match=rf"l\.fgb: {says}"):
+        read_breaklines(str(banks), cloud, None)
 
 
 @pytest.mark.parametrize("suffix", ["fgb", "geojson"])

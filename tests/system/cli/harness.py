@@ -35,6 +35,15 @@ class Result:
         return {line[:12].strip(): line[12:].strip() for line in self.out.splitlines()}
 
 
+def as_ordinary_user():
+    """For `before`."""
+    default_signals()
+    if os.geteuid() == 0:  # root may do everything
+        os.setgroups([])
+        os.setgid(65534)
+        os.setuid(65534)
+
+
 class CliTest(unittest.TestCase):
     """Each test has its own folder, in which the program runs."""
 

@@ -232,6 +232,10 @@ class Help(CliTest):
         self.assertEqual(self.cadt("help", "raster").out, self.cadt("raster", "--help").out)
         self.fails(2, "help", "me", says="there is no command 'me'; there are: triangulate, ")
         self.fails(2, "traingulate", "a.xy", says="there is no command 'traingulate'; did you mean triangulate?")
+        for name, advice in (("tile", "did you mean tiles? To triangulate a file: cadt triangulate tile"),
+                             ("points", "view, generate, devices, info. To triangulate a file: cadt triangulate points")):
+            self.write(name, "0 0\n")
+            self.fails(2, name, says=advice)
 
     def test_words_that_are_no_options(self):
         options = "cadt triangulate has no option"
@@ -240,6 +244,10 @@ class Help(CliTest):
         self.fails(2, "triangulate", "a.xy", "--zzz", says=options + " --zzz; see: cadt triangulate --help")
         self.fails(2, "triangulate", "a.xy", "-n", "5", says=options + " -n; see: cadt triangulate --help")
         self.fails(2, "triangulate", "a.xy", "b.xy", says="not expected: b.xy; see: cadt triangulate --help")
+        # before what is missing
+        self.fails(2, "triangulate", "--bogus", says=options + " --bogus; see: cadt triangulate --help")
+        self.fails(2, "raster", "a.xyz", "-o", "b.asc", "--rse", "1", says="has no option --rse; did you mean --res?")
+        self.fails(2, "raster", "a.xyz", "-o", "b.asc", says="--res is required")
 
     def test_each_command_has_an_example(self):
         for command in self.COMMANDS:

@@ -11,7 +11,7 @@ import struct
 import tempfile
 import unittest
 
-from harness import PROGRAM, CliTest, default_signals, integer_points, xy_text
+from harness import PROGRAM, CliTest, as_ordinary_user, default_signals, integer_points, xy_text
 
 
 class Usage(CliTest):
@@ -161,12 +161,6 @@ class Files(CliTest):
         os.chmod(folder, 0o555)
         os.chmod(self.folder, 0o755)
 
-        def as_ordinary_user():
-            default_signals()
-            if os.geteuid() == 0:  # root may do everything
-                os.setgroups([])
-                os.setgid(65534)
-                os.setuid(65534)
         run = dict(before=as_ordinary_user, program=program)
         self.fails(3, "triangulate", folder / "closed.xy", says="closed.xy", **run)
         self.fails(3, "triangulate", "absent.xy", "-o", folder / "m.obj", says="m.obj", **run)

@@ -50,8 +50,9 @@ class RenderTest(CliTest):
         self.assertEqual(rows[50][3 * 70:3 * 71], PAPER)
         self.cadt("render", "p.xy", "-o", "a.png", "--size", "101x101", "--camera", "300,50,1", "-q")
         self.assertEqual(colours(self.path("a.png")), {PAPER})
-        for camera, nearest in (("50,50,1e-3", "0.0625"), ("50,50,1e40", "e+")):
-            self.fails(2, "render", "p.xy", "-o", "b.png", "--camera", camera, says=("--camera", nearest))
+        self.fails(2, "render", "p.xy", "-o", "b.png", "--camera", "50,50,1e40", says=("--camera", "e+"))
+        for least in ("1e-3", "0", "-1", "nan"):  # whatever the points are
+            self.fails(2, "render", "missing.xy", "-o", "b.png", "--camera", f"50,50,{least}", says=("--camera", "0.0625"))
 
     def test_svg_and_pdf(self):
         self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "a.svg", "--size", 400)

@@ -82,6 +82,8 @@ class GrowthSheetTest(CliTest):
     def test_what_does_not_go_together(self):
         for name, says in (("a.svg", "png"), ("a.jpg", "png"), ("a", "png"), ("-", "name a file")):
             self.fails(2, "render", "--generate", "uniform", "-o", name, "--growth", 2, says=says)
+        err = self.fails(2, "render", "--generate", "uniform", "-o", "a.svg", "--growth", 2, says="it has to be one of: png").err
+        self.assertNotIn("-t", err)  # which is not for growth
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 2, "--no-hull", says="--no-hull")
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 2, "--camera", "0.5,0.5,1e-3", says="0.0625")
         self.fails(2, "render", "--generate", "uniform", "-o", "a.mp4", "--growth", 4, says=("--growth is for a picture", "growth.png"))

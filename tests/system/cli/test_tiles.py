@@ -11,7 +11,7 @@ import subprocess
 import unittest
 from unittest import mock
 
-from harness import SOURCE, CliTest, default_signals, digest
+from harness import PROGRAM, SOURCE, CliTest, as_ordinary_user, default_signals, digest
 
 
 def limit(what, size):
@@ -214,6 +214,16 @@ class TilesResumeTest(CliTest):
         self.assertTrue(self.path("mesh.cadt/run.json").exists())
         self.path("mesh.cadt/node-000004/links.npy").write_bytes(b"")
         self.resume()
+
+    def test_complete_directory_that_cannot_be_written(self):
+        mesh = self.path("whole.cadt")
+        mesh.joinpath("run.json").unlink()
+        program = shutil.copy(PROGRAM, self.path("program"))  # the build folder may be closed to others
+        self.folder.chmod(0o755)
+        mesh.chmod(0o555)
+        self.addCleanup(mesh.chmod, 0o755)
+        self.cadt(*self.COMMAND, mesh, "--resume", before=as_ordinary_user, program=program)
+        self.assertFalse(mesh.joinpath("run.json").exists())
 
     def test_interrupted(self):
         code, text = self.ended("rename unfinished/node-000000", number=signal.SIGINT)

@@ -48,6 +48,10 @@ class TilesDirectoryTest(CliTest):
         contradicts(lambda m: m.update(hash="f" * 32), "its hash of the mesh")
         contradicts(lambda m: m["nodes"][0]["sums"].update(certified_edges=1), "not the sum of its nodes")
         contradicts(lambda m: m["whole"].update(distinct=299), "not the sum of its nodes")
+        for dimension in (2**64 - 1, 2**64 - 2, 3, -2, 2.5, "2", None, True):
+            contradicts(lambda m, d=dimension: m["nodes"][0]["sums"].update(dimension=d), "a dimension is from -1 to 2")
+        for dimension in (-1, 1):
+            contradicts(lambda m, d=dimension: m["nodes"][0]["sums"].update(dimension=d), "the dimension is not 2")
         contradicts(lambda m: m.update(points=301), "number of points")
         contradicts(lambda m: m["nodes"][0].update(files=[]), "a node has not its files")
         contradicts(lambda m: m["nodes"][0]["files"].reverse(), "a node has not its files")
@@ -82,6 +86,10 @@ class TilesDirectoryTest(CliTest):
         before = digest(self.path("m.cadt"))
         for option, name in (("--stats", "manifest.json"), ("--stats", "node-000000/ids.npy"), ("--picture", "new.svg")):
             self.fails(2, *command, "--resume", option, f"m.cadt/{name}", says=(f"m.cadt/{name}", "outside of it"))
+        for mesh in ("new.cadt", "new.cadt/", "./none/../new.cadt"):  # that is not there yet
+            for option, name in (("--stats", "new.cadt"), ("--stats", "new.cadt/s.json"), ("--picture", "./new.cadt/s.svg")):
+                self.fails(2, *command[:-1], mesh, option, name, says=(name, "outside of it"))
+        self.assertNotIn("new.cadt", self.names())
         self.assertEqual(digest(self.path("m.cadt")), before)
         self.assertNotIn("new.svg", [path.name for path in self.path("m.cadt").iterdir()])
         self.cadt(*command, "--resume", "--stats", "beside.json", "--picture", "beside.svg")

@@ -49,6 +49,8 @@ class WrongInput(FaultTest):
     def test_command_line(self):
         self.fails(2, 2, self.name, "--tile-point", 5, says=["no option --tile-point; did you mean --tile-points?",
                                                              "cadt-mpi tiles --help"])
+        self.fails(2, 2, command=[MPIRUN, *ANYWHERE, "-n", "2", MPI_PROGRAM, "tils"],
+                   says="there is no command 'tils'; did you mean tiles?")
         self.fails(2, 2, "-o", "mesh.cadt", says="name files")
         self.fails(2, 3, self.name, "--tile-points", 2, says="at least 3")
         self.fails(3, 2, "missing.f64", *self.options, says="missing.f64")

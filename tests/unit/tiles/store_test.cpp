@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
 #include <fstream>
 #include <map>
 
@@ -136,6 +138,41 @@ TEST_F(StoreTest, OneRunAtATime) {
   EXPECT_TRUE(lock.take(path_));
   refused(Store::Start::create);
   refused(Store::Start::resume);
+}
+
+TEST_F(StoreTest, ALockEndsWithItsStoreThoughAChildLives) {
+  int pipe[2];
+  ASSERT_EQ(::pipe(pipe), 0);
+  pid_t child = 0;
+  {
+    const Store store(path_, made_.plan, Store::Start::create);
+    child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {  // has the descriptor until the pipe is closed
+      ::close(pipe[1]);
+      char none = 0;
+      ::_exit(static_cast<int>(::read(pipe[0], &none, 1)));
+    }
+  }
+  EXPECT_NO_THROW(Store(path_, made_.plan, Store::Start::resume));
+  {
+    const Store store(path_, made_.plan, Store::Start::resume);
+    const pid_t other = ::fork();
+    if (other == 0) {
+      store.~Store();  // as in a child that ends orderly
+      ::_exit(0);
+    }
+    ::waitpid(other, nullptr, 0);
+    EXPECT_THROW(Store(path_, made_.plan, Store::Start::resume), ResumeError);
+  }
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+  ::waitpid(child, nullptr, 0);
+}
+
+TEST_F(StoreTest, AFolderThatCannotBeOpenedIsNotLocked) {
+  FolderLock lock;
+  EXPECT_THROW((void)lock.take(folder_ / "none"), io::FileError);
 }
 
 TEST_F(StoreTest, EachDamagedFileMakesItsNodeInvalid) {

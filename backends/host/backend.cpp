@@ -2,6 +2,7 @@
 // The host as a device: the device text compiled as C++, on threads of this process.
 #include "common/driver/backend.hpp"
 
+#include <cadt/errors.hpp>
 #include <cadt/triangulator.hpp>
 #include <cadt/version.hpp>
 
@@ -208,7 +209,14 @@ void require_selftest(Device& device) {
     Options alone;
     alone.threads = 1;
     HostDevice of_this_thread(alone);
-    selftest_variants(of_this_thread);
+    try {
+      selftest_variants(of_this_thread);
+    } catch (const BackendUnavailable& error) {
+      throw BackendUnavailable(error.backend(),
+                               error.reason() +
+                                   ". The program has changed the arithmetic of this thread: do not link it with "
+                                   "-ffast-math, or reset the rounding mode and the flags FTZ and DAZ before the call");
+    }
     return;
   }
   if (passed.load(std::memory_order_relaxed)) return;

@@ -20,12 +20,16 @@ def main() -> int:
     else:
         print("cadt: the program is not in this build of the package (CADT_BUILD_APPS is OFF)", file=sys.stderr)
         return 2
-    if not windows:
-        # The name that it was called by: the program looks for cadt-terrain beside it.
-        os.execv(program, [sys.argv[0], *sys.argv[1:]])
-    import subprocess
+    try:
+        if not windows:
+            # The name that it was called by: the program looks for cadt-terrain beside it.
+            os.execv(program, [sys.argv[0], *sys.argv[1:]])
+        import subprocess
 
-    # The libraries of a repaired wheel lie beside the package.
-    libraries = os.path.join(os.path.dirname(folder), "cadt.libs")
-    path = os.pathsep.join((libraries, os.environ.get("PATH", "")))
-    return subprocess.run([program, *sys.argv[1:]], env={**os.environ, "PATH": path}, check=False).returncode
+        # The libraries of a repaired wheel lie beside the package.
+        libraries = os.path.join(os.path.dirname(folder), "cadt.libs")
+        path = os.pathsep.join((libraries, os.environ.get("PATH", "")))
+        return subprocess.run([program, *sys.argv[1:]], env={**os.environ, "PATH": path}, check=False).returncode
+    except OSError as error:  # a wheel that was unpacked by something else than pip, without the right to execute
+        print(f"cadt: {program} cannot be started: {error.strerror}; install the wheel with pip", file=sys.stderr)
+        return 2

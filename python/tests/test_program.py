@@ -65,6 +65,15 @@ def test_no_program_in_this_build(package: Path) -> None:
     assert done.stderr == "cadt: the program is not in this build of the package (CADT_BUILD_APPS is OFF)\n"
 
 
+def test_a_program_that_may_not_be_executed(package: Path) -> None:
+    add_program(package)
+    (package / "bin" / "cadt").chmod(0o644)
+    done = run(package, "-m", "cadt", "--version")
+    assert (done.returncode, done.stdout) == (2, "")
+    program = package / "bin" / "cadt"
+    assert done.stderr == f"cadt: {program} cannot be started: Permission denied; install the wheel with pip\n"
+
+
 def test_nothing_else_is_imported(package: Path) -> None:
     script = "import sys, cadt._program; print([m for m in sys.modules if m.startswith(('numpy', 'cadt'))])"
     assert run(package, "-c", script).stdout == "['cadt', 'cadt._program']\n"

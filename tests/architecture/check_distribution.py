@@ -19,7 +19,8 @@ TOOLS = ("check-jsonschema", "cibuildwheel")
 # Platform, architecture -> the last part of the names of its wheels.
 WHEELS = {("linux", "x86_64"): "manylinux_x86_64", ("linux", "aarch64"): "manylinux_aarch64", ("macos", "x86_64"): "macosx_x86_64",
           ("macos", "arm64"): "macosx_arm64", ("windows", "AMD64"): "win_amd64"}
-PYTHONS = ("cp310", "cp311", "cp312")
+PYTHONS = ("cp310", "cp311", "cp312", "cp313", "cp314")
+NOT_PINNED = "pypa/gh-action-pypi-publish@release/v1"  # docs/release.md says when it is
 
 
 def tool(name):
@@ -47,6 +48,9 @@ def check_workflows(root):
     parts = {*parts[1].split(), *parts[2].split(), "all"}
     architectures = set()
     for file in sorted((root / ".github" / "workflows").glob("*.yml")):
+        for action in re.findall(r"\buses: *(.*)", file.read_text()):
+            if not re.search(r"@[0-9a-f]{40} +# v[\d.]+$", action) and action.split()[0] != NOT_PINNED:
+                yield f"{file.name}: {action} is not a commit, with its tag in a comment"
         jobs = YAML(typ="safe").load(file)["jobs"]
         for name, job in jobs.items():
             where = f"{file.name}: job {name}"
@@ -62,8 +66,6 @@ def check_workflows(root):
                     yield from check_script(root, where, script)
                     if script == "scripts/test" and argument and argument not in parts:
                         yield f"{where}: scripts/test has no part {argument}"
-                if "uses" in step and not re.search(r"@(v[\d.]+|release/v\d+)$", step["uses"]):
-                    yield f"{where}: {step['uses']} has no version"
             for row in job.get("strategy", {}).get("matrix", {}).get("include", []):
                 architectures.add(row.get("archs"))
     for platform, architecture in WHEELS:
@@ -110,7 +112,8 @@ FAULTS = [  # file, what is replaced by what, what is said then
     (".github/workflows/ci.yml", "runs-on: windows-2022", "run-on: windows-2022", "runs-on|run-on"),
     (".github/workflows/ci.yml", "run: scripts/test portability", "run: scripts/test portable", "no part portable"),
     (".github/workflows/ci.yml", "run: scripts/quickstart", "run: scripts/quick_start", "scripts/quick_start is not there"),
-    (".github/workflows/ci.yml", "actions/checkout@v4", "actions/checkout@main", "has no version"),
+    (".github/workflows/ci.yml", "actions/checkout@fbc6f3992d24b796d5a048ff273f7fcc4a7b6c09", "actions/checkout@v5", "v5  # v5.1.0 is not a commit"),
+    (".github/workflows/wheels.yml", "  # v3.4.1", "", "is not a commit, with its tag"),
     (".github/workflows/ci.yml", "    timeout-minutes: 90\n", "", "has no timeout"),
     (".github/workflows/wheels.yml", "needs: [wheels, sdist]", "needs: [wheel, sdist]", "needs wheel, which is no job"),
     (".github/workflows/wheels.yml", "archs: aarch64", "archs: ppc64le", "no job builds wheels for linux on aarch64"),

@@ -112,6 +112,11 @@ def command(words: Sequence[str]) -> int:
         if not words or words[0] in ("-h", "--help"):
             write_out(_options.main_help())
             return errors.EXIT_DONE if words else errors.EXIT_USAGE
+        if words[0] == "--version":
+            import cadt
+
+            write_out(f"cadt {cadt.__version__}\n")
+            return errors.EXIT_DONE
         if words[0] not in _options.SUMMARIES:
             near = _options.suggestion(words[0], _options.SUMMARIES) or f"; there are: {', '.join(_options.SUMMARIES)}"
             raise errors.UsageError(f"there is no command '{words[0]}'{near}")

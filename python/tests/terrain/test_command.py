@@ -15,6 +15,7 @@ import sys
 import time
 import types
 
+import cadt
 import numpy as np
 import pytest
 from cadt.terrain import __main__, _options
@@ -32,6 +33,17 @@ def test_help_teaches_by_examples():
         )
         assert done.stderr == "" and f"usage: cadt {command} IN [IN...] OUT" in done.stdout
         assert done.stdout.count(f"\n  cadt {command} ") >= 2 and "Exit codes:" in done.stdout
+
+
+def test_version():
+    done = subprocess.run(
+        [sys.executable, "-m", "cadt.terrain", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": PACKAGES},
+    )
+    assert (done.stdout, done.stderr) == (f"cadt {cadt.__version__}\n", "")
 
 
 def test_every_option_is_in_the_documentation():

@@ -144,7 +144,8 @@ template <class Call>
 bool is_refused(const Call& call) {
   try {
     call();
-  } catch (const BackendUnavailable&) {
+  } catch (const BackendUnavailable& error) {
+    EXPECT_NE(error.reason().find("changed the arithmetic of this thread"), std::string::npos) << error.reason();
     return true;
   }
   return false;

@@ -88,15 +88,15 @@ class Installed(InstallTest):
         self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
         self.consume_with_pkg_config(prefix, "--static")
 
-    def ask_for(self, prefix, asked, *options):
+    def ask_for(self, prefix, asked, *options, languages="CXX"):
         """What a project sees after a find_package() of cadt, and what CMake says where that ends it."""
         project = self.folder / "asks"
         project.mkdir(exist_ok=True)
         (project / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES CXX)\nset(CAIRO_FOUND mine)\n"
+            f"cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES {languages})\nset(CAIRO_FOUND mine)\n"
             f"find_package(cadt {asked})\n"
             'if(TARGET cadt::io)\n  set(io io)\nendif()\n'
-            'message(STATUS "found ${cadt_FOUND} ${cadt_io_FOUND} ${io} ${CAIRO_FOUND}.")\n')
+            'message(STATUS "found ${cadt_FOUND} ${cadt_io_FOUND} ${io} ${CAIRO_FOUND}.${cadt_NOT_FOUND_MESSAGE}")\n')
         done = subprocess.run(["cmake", "-S", project, "-B", project / "build", "-G", "Ninja", "--fresh", f"-DCMAKE_PREFIX_PATH={prefix}",
                                *options], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return " ".join(done.stdout.split())
@@ -110,10 +110,18 @@ class Installed(InstallTest):
             self.assertIn("found 0 FALSE mine.", self.ask_for(prefix, f"{quiet}COMPONENTS io", *missing))
         self.assertIn("cadt::io needs: fmt PkgConfig cairo", self.ask_for(prefix, "REQUIRED COMPONENTS io", *missing))
         self.assertIn("cadt has no component files, only io", self.ask_for(prefix, "REQUIRED COMPONENTS files"))
+        # Of what is found nothing is said.
+        self.assertRegex(self.ask_for(prefix, "REQUIRED COMPONENTS io OPTIONAL_COMPONENTS files"), r"found 1 TRUE io mine\. --")
         next(prefix.glob("lib*/**/cadtIoTargets.cmake")).unlink()
         self.assertIn("cadt::io needs: the file formats, which this cadt was built without",
                       self.ask_for(prefix, "REQUIRED COMPONENTS io"))
         self.assertIn("found 1 FALSE mine.", self.ask_for(prefix, "REQUIRED OPTIONAL_COMPONENTS io"))
+
+    def test_a_project_of_c_alone(self):
+        prefix = installed(BUILD, self.folder / "prefix")
+        self.assertIn("found 1 mine.", self.ask_for(prefix, "REQUIRED", languages="C CXX"))
+        self.assertIn("found 0 mine.", self.ask_for(prefix, "", languages="C"))
+        self.assertIn("needs the C++ linker: project(... LANGUAGES C CXX)", self.ask_for(prefix, "REQUIRED", languages="C"))
 
 
 class Sources(InstallTest):

@@ -33,7 +33,7 @@ class Cadt(CMakePackage, CudaPackage):
         depends_on("xxhash", type="build")
         depends_on("fast-float")
         depends_on("fmt")
-        depends_on("cairo")
+        depends_on("cairo@1.16:+pdf+png+svg+ft+fc")  # from 1.18 on the recipe wants fonts with PDF
         depends_on("libpng")
         depends_on("zlib-api")
 

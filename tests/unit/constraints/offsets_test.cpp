@@ -42,7 +42,9 @@ TEST(ConstraintOffsets, EachWorkItemHasItsOwnMemory) {
   cadt_triangulate_polygons(item, item + 1, points.data(), ring_begins.data(), polygon_rings.data(), item + 1, 1,
                             memory.data(), item_words, 0, triangles.data(), counts.data(), results.data());
   EXPECT_EQ(counts[item], n - 2);
-  const auto written = [&](std::size_t from) { return std::any_of(&memory[from], &memory[from + 8], [](auto w) { return w != 0; }); };
+  const auto written = [&](std::size_t from) {
+    return std::any_of(&memory[from], &memory[from + 8], [](auto w) { return w != 0; });
+  };
   EXPECT_FALSE(written(0));
   EXPECT_TRUE(written(wrap));
 }

@@ -234,8 +234,7 @@ void preflight(const PointSource& source, const RunOptions& options) {
   const bool shuffles = source.size() > options.tile_points && !in_cells(source, options.tile_points);
   const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options, writers(source, options));
   if (leaf > available) {
-    throw OutOfMemory("the tiles at work do not fit into memory; make them smaller with --tile-points", leaf,
-                      available);
+    throw OutOfMemory("the tiles at work do not fit into memory", leaf, available);
   }
   const std::uint64_t shuffled = shuffles ? source.size() * bytes_per_shuffled_point : 0;
   const bool scratch = needs_scratch(shuffled, shuffle_memory(options, available, leaf), options.scratch);

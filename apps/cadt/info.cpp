@@ -136,7 +136,7 @@ struct InfoCommand {
 int print_info(const InfoCommand& command) {
   const bool segments = has_segments(command.input, {});
   const Graph graph = segments ? read_graph(command.input, {.file = {}, .domain = "seeds", .crossing = {}}, true)
-                               : Graph{read_input(command.input), {}, {}, {}};
+                               : Graph{io::read_points(command.input.path, read_options(command.input)), {}, {}, {}};
   const Info info = inspect(graph.points);
   const GraphInfo more = inspect_graph(graph);
   if (command.json) {

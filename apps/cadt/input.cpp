@@ -7,11 +7,13 @@
 #include <cadt/io/errors.hpp>
 #include <cadt/io/generate.hpp>
 #include <cadt/io/segments_file.hpp>
+#include <cadt/triangulation.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
@@ -135,7 +137,18 @@ io::ReadOptions read_options(const InputOptions& options) {
   return read;
 }
 
-io::PointSet read_input(const InputOptions& options) { return io::read_points(options.path, read_options(options)); }
+io::PointSet read_input(const InputOptions& options) {
+  const io::ReadOptions read = read_options(options);
+  // A raw file says by its size how many points it has: too many are refused before there is memory for the file.
+  const std::string format =
+      read.format.empty() ? lower(std::filesystem::path(options.path).extension().string()) : "." + read.format;
+  std::error_code code;
+  if (const std::size_t bytes = format == ".f64" ? 16 : format == ".f32" ? 8 : 0; bytes != 0)
+    if (const std::uintmax_t points = std::filesystem::file_size(options.path, code) / bytes;
+        !code && points > max_points())
+      throw LimitError(options.path + " holds more points than fit", static_cast<std::size_t>(points), max_points());
+  return io::read_points(options.path, read);
+}
 
 std::string display_name(const std::string& path, bool input) {
   if (path != "-") return path;

@@ -11,7 +11,7 @@ from cadt import _cadt, _devices, _gpu, _show
 from cadt._arrays import adapter_of, array_on_device
 from cadt._errors import InputError, InternalError, OptionError
 from cadt._mesh import Mesh, read_only
-from cadt._points import as_pairs, as_points, as_values, contiguous
+from cadt._points import as_input, as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
 from cadt._segments import constraints_of, segments_of, segments_there
@@ -150,7 +150,7 @@ class ConstrainedDelaunay(Mesh):
             return
         if adapter_of(segments) is not None:
             raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
-        self._input = as_points(points)
+        self._input = as_input(points)
         self._given = len(self._input)
         self._segments = read_only(segments_of(segments, polylines, rings, len(self._input)))
         self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)

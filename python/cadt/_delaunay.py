@@ -10,7 +10,7 @@ import numpy as np
 from cadt import _cadt, _devices, _gpu
 from cadt._arrays import array_on_device
 from cadt._mesh import Mesh
-from cadt._points import as_indices, as_points
+from cadt._points import as_indices, as_input, as_points
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
 
@@ -98,7 +98,7 @@ class Delaunay(Mesh):
                 self._gpu = _gpu.Mesh(on_gpu, arguments, report)
             self._options = self._gpu.options
             return
-        self._points = as_points(points)
+        self._points = as_input(points)
         n = len(self._points)
         self._options = _devices.make_options(*arguments)
         open_device = _devices.device_for(self._options, device, threads, n)

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
 import numbers
 import operator
 from typing import Any
 
 import numpy as np
 
+from cadt import _cadt
 from cadt._errors import InputError
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
@@ -30,6 +32,19 @@ def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> 
     if s0 < 0 or s0 % size or s1 % size or not a.flags.aligned:
         a = a.copy()  # also of one row, which is contiguous whatever its strides are
     return a
+
+
+def as_input(points: Any, what: str = "points") -> np.ndarray:
+    """As `as_points`. Of more points than a call takes there is no copy: the library refuses so many, whatever they are."""
+    a = points if type(points) is np.ndarray else to_array(points, what)
+    if a.ndim == 2 and a.shape[1] == 2 and len(a) > _cadt.max_points():
+        return np.broadcast_to(0.0, a.shape)
+    return as_points(a, what)
+
+
+def offsets(begins: Any) -> Any:
+    """Offsets of rows, as NumPy's or another array: int32 as of SciPy, unless the last one does not fit."""
+    return begins.astype(np.int32 if int(begins[-1]) < 2**31 else np.int64)
 
 
 def contiguous(a: np.ndarray, dtype: Any = None) -> np.ndarray:
@@ -148,14 +163,16 @@ def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
     if is_x_and_y(xi):
         x, y = (unmasked(a, "queries") for a in xi)
         try:
-            xi = np.stack(np.broadcast_arrays(x, y), axis=-1)
+            shape = np.broadcast_shapes(np.shape(x), np.shape(y))
+            many = math.prod(shape) > _cadt.max_points()  # as in as_input
+            xi = np.broadcast_to(0.0, (*shape, 2)) if many else np.stack(np.broadcast_arrays(x, y), axis=-1)
         except ValueError as e:
             raise InputError(f"x and y of queries do not fit together: {e}", 0) from None
     a = xi if type(xi) is np.ndarray else to_array(xi, "queries")
     if a.ndim == 0 or a.shape[-1] != 2:
         raise InputError(f"queries must have shape (..., 2), not {a.shape}", 0)
     shape = a.shape[:-1]
-    return as_points(a.reshape(-1, 2), "queries"), shape
+    return as_input(a.reshape(-1, 2), "queries"), shape
 
 
 def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:

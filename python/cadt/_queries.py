@@ -91,6 +91,8 @@ class Queries:
         ------
         OptionError
             `k` is below 1, or 2**31 and more.
+        LimitError
+            There are 2**31 answers or more.
 
         >>> Delaunay([[0, 0], [1, 0], [0, 1]]).nearest_vertex([0.9, 0.2])
         array(1, dtype=int32)
@@ -103,7 +105,7 @@ class Queries:
         q, shape = as_queries(xi)
         wanted = shape if k == 1 else (*shape, k)
         most = max(self.n_points, 1)
-        if k <= most:
+        if k <= most or len(q) * k >= 2**31:  # so many are refused
             return self._queries().nearest(q, k).reshape(wanted)
         result = np.full(wanted, -1, dtype=np.int32)
         result[..., :most] = self._queries().nearest(q, most).reshape(*shape, most)
@@ -265,6 +267,15 @@ class Queries:
         return _cadt.Queries(points, mesh, _devices.for_queries(self._options))
 
 
+def cells_along(length: float, cell: float) -> float:
+    """Cells that cover a length. What is whole but for the rounding of decimals (2.1 / 0.3) is whole."""
+    exact = length / cell
+    if not math.isfinite(exact):
+        return exact
+    whole = float(round(exact))
+    return whole if whole >= 1 and abs(exact - whole) <= 1e-9 * whole else float(math.ceil(exact))
+
+
 def grid_of(
     bounds: Sequence[float],
     shape: tuple[int, int] | None,
@@ -285,7 +296,7 @@ def grid_of(
             raise OptionError(f"resolution must be positive, not {resolution}", "resolution")
         # There may be more than the largest double, which are too many as well.
         most = sys.float_info.max
-        columns, rows = (max(1, math.ceil(min((b - a) / d - 1e-9, most))) for a, b, d in ((x0, x1, dx), (y0, y1, dy)))
+        columns, rows = (max(1, int(min(cells_along(b - a, d), most))) for a, b, d in ((x0, x1, dx), (y0, y1, dy)))
     else:
         try:
             rows, columns = (operator.index(s) for s in shape)  # type: ignore[union-attr]

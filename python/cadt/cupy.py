@@ -16,6 +16,7 @@ import numpy as np
 
 import cadt
 from cadt._errors import OptionError
+from cadt._points import offsets
 
 __all__ = ["Delaunay"]
 
@@ -46,7 +47,7 @@ class Delaunay:
     simplices, neighbors : (nsimplex, 3) int32
         Counterclockwise; the k-th neighbour is opposite the k-th vertex, -1 outside.
     vertex_neighbor_vertices : (indptr, indices)
-        int32. May be called too, as CuPy's method.
+        int32, offsets beyond it int64. May be called too, as CuPy's method.
     vertex_to_simplex : (npoints,) int32
     convex_hull : (nfaces, 2) int32
     coplanar : (ncoplanar, 3) int32
@@ -103,7 +104,7 @@ class Delaunay:
     @cached_property
     def vertex_neighbor_vertices(self) -> Rows:
         indptr, indices = self.mesh.vertex_neighbors
-        return Rows((indptr.astype(np.int32), indices))
+        return Rows((offsets(indptr), indices))
 
     @property
     def vertex_to_simplex(self) -> Any:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import cadt
@@ -255,7 +256,28 @@ def test_queries_as_x_and_y() -> None:
         MESH.find_simplex((np.ma.array(x, mask=[True, False]), y))
 
 
+def test_more_than_a_call_takes() -> None:
+    """Refused before there is a copy: the arrays have the memory of one number."""
+    points = np.broadcast_to(np.int64(0), (2**34, 2))
+    column = points[:, 0]
+    calls: list[Callable[[], object]] = [
+        lambda: cadt.Delaunay(points),
+        lambda: cadt.ConstrainedDelaunay(points),
+        lambda: MESH.find_simplex(points),
+        lambda: MESH.find_simplex((column, column)),
+        lambda: MESH.find_simplex((column, 0.5)),
+        lambda: MESH.nearest_vertex(np.zeros((2, 2)), 2**30),
+    ]
+    for call in calls:
+        with pytest.raises(LimitError):
+            call()
+
+
 def test_sizes_of_cells() -> None:
+    mesh = cadt.Delaunay([[0, 0], [100000.000045, 0], [0, 1]])  # 100,000 cells and what is left by rounding
+    assert mesh.rasterize(np.zeros(3), resolution=1).shape == (1, 100_000)
+    mesh = cadt.Delaunay([[0, 0], [1.00000001, 0], [0, 1]])
+    assert mesh.rasterize(np.zeros(3), resolution=1).shape == (1, 2)
     for size in (1e-320, 1e-300, (1e-320, 1)):
         with pytest.raises(LimitError) as caught:
             MESH.rasterize(Z, resolution=size)  # type: ignore[arg-type]

@@ -28,6 +28,14 @@ def test_attributes(points: np.ndarray) -> None:
     assert np.array_equal(tri.find_simplex(q, bruteforce=True, tol=0), mesh.find_simplex(q))
 
 
+def test_offsets_beyond_int32() -> None:
+    tri = cadt.cupy.Delaunay(np.eye(3)[:, :2])
+    begins = np.array([0, 6, 2**31, 2**31 + 6])  # as of 360 million points
+    tri.mesh._cache["vertex_neighbors"] = begins, np.zeros(3, np.int32)
+    indptr, _ = tri.vertex_neighbor_vertices
+    assert indptr.dtype == np.int64 and np.array_equal(indptr, begins)
+
+
 def test_arguments(rng: np.random.Generator) -> None:
     p = rng.random((10, 2))
     for bad in (rng.random((10, 3)), rng.random(10), rng.random((2, 5, 2))):

@@ -56,6 +56,14 @@ def test_attributes(general: np.ndarray, options: str | None, incremental: bool)
     assert all(set(ia[pa[v] : pa[v + 1]]) == set(ib[pb[v] : pb[v + 1]]) for v in range(len(general)))
 
 
+def test_offsets_beyond_int32() -> None:
+    mesh = ours.Delaunay(np.random.default_rng(0).random((100, 2)))
+    begins = np.array([0, 6, 2**31, 2**31 + 6])  # as of 360 million points
+    mesh.mesh._cache["vertex_neighbors"] = begins, np.zeros(3, np.int32)
+    indptr, _ = mesh.vertex_neighbor_vertices
+    assert indptr.dtype == np.int64 and np.array_equal(indptr, begins)
+
+
 def test_transform(general: np.ndarray) -> None:
     a = scipy.spatial.Delaunay(general)
     b = ours.Delaunay(general)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import Delaunay as _Triangulation
 
 from cadt import _cadt
+from cadt._points import offsets
 from cadt.scipy._hull import HullFinder
 from cadt.scipy._plane import Plane
 
@@ -53,7 +54,7 @@ class Delaunay(Plane, _Triangulation):
     coplanar : (ncoplanar, 3) int32
         Each duplicate, a triangle at it, and the vertex that it equals.
     vertex_neighbor_vertices : (indptr, indices)
-        Both int32.
+        Both int32; offsets beyond it int64.
     mesh : cadt.Delaunay
         The mesh with all its queries; None if this is SciPy's triangulation.
 
@@ -148,7 +149,7 @@ class Delaunay(Plane, _Triangulation):
     def vertex_neighbor_vertices(self) -> tuple[np.ndarray, np.ndarray]:
         if self._vertex_neighbor_vertices is None and self.mesh is not None:
             indptr, indices = self.mesh.vertex_neighbors
-            self._vertex_neighbor_vertices = (indptr.astype(np.intc), np.array(indices, dtype=np.intc))
+            self._vertex_neighbor_vertices = (offsets(indptr), np.array(indices, dtype=np.intc))
         return super().vertex_neighbor_vertices
 
     @property

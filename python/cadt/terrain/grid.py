@@ -8,6 +8,8 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
+from cadt._queries import cells_along
+
 from ._files import check_input, check_utf8, rasterio_errors, why
 from .cloud import Extent, name_of, same_crs
 from .errors import CrsError, FileError, Unavailable, UsageError
@@ -15,7 +17,7 @@ from .errors import CrsError, FileError, Unavailable, UsageError
 if TYPE_CHECKING:
     import pyproj
 
-MOST_CELLS = (1 << 32) - 1
+MOST_CELLS, MOST_IN_LINE = (1 << 32) - 1, (1 << 31) - 1
 Box = tuple[float, float, float, float]
 
 
@@ -53,19 +55,6 @@ class Grid:
         return Grid(self.x0, self.y1, self.dx, self.dy, columns, rows, column, row)
 
 
-def cells_along(length: float, cell: float) -> float:
-    """Cells that cover a length. What is whole but for the rounding of decimals (2.1 / 0.3) is whole."""
-    exact = length / cell
-    whole = float(round(exact)) if math.isfinite(exact) else exact
-    return (
-        whole
-        if whole >= 1 and abs(exact - whole) <= 1e-9 * whole
-        else float(math.ceil(exact))
-        if math.isfinite(exact)
-        else exact
-    )
-
-
 def check_resolution(resolution: float) -> None:
     if not (resolution > 0 and math.isfinite(resolution)):
         raise UsageError(f"--res {resolution:g}: a cell needs a finite size above 0")
@@ -90,9 +79,10 @@ def count(cells: float) -> str:
 
 
 def check_size(columns: float, rows: float, about: str) -> None:
-    if not columns * rows <= MOST_CELLS:
+    if not (columns * rows <= MOST_CELLS and max(columns, rows) <= MOST_IN_LINE):
+        most = f"{MOST_IN_LINE} in a row or column" if columns * rows <= MOST_CELLS else f"{MOST_CELLS} in all"
         raise UsageError(
-            f"{about}: {count(columns)} x {count(rows)} cells, at most {MOST_CELLS} in all: take a larger --res, or tiles with --bounds"
+            f"{about}: {count(columns)} x {count(rows)} cells, at most {most}: take a larger --res, or tiles with --bounds"
         )
 
 

@@ -38,9 +38,10 @@ def choose_grid(cloud: Extent, options: argparse.Namespace) -> Grid:
 
 
 def rows_at_a_time(grid: Grid, points: int) -> int:
-    """So many that a pass over the triangles is worth it: as many cells as points, in whole tiles of the file."""
+    """So many that a pass over the triangles is worth it: as many cells as points, in whole tiles of the file, unless
+    these are more cells than a call takes."""
     rows = max(points, 1 << 22) // grid.columns
-    return min(grid.rows, max(BLOCK, rows // BLOCK * BLOCK))
+    return min(grid.rows, ((1 << 31) - 1) // grid.columns, max(BLOCK, rows // BLOCK * BLOCK))
 
 
 def fill_nearest(

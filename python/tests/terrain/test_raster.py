@@ -14,6 +14,7 @@ from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
 from cadt.terrain._tiles import TiledRaster, discs
 from cadt.terrain.grid import Grid, grid_of_file, parse_bounds
+from cadt.terrain.raster import rows_at_a_time
 from clouds import hills, hull_on_centres, many
 from rasterio.crs import CRS
 
@@ -298,6 +299,7 @@ def test_discs_hold_the_circumscribed_ones():
         (["--res", "x"], 2, "--res"),
         (["--res", "1e-6"], 2, "at most 4294967295 in all: take a larger --res, or tiles with --bounds"),
         (["--res", "1e-300"], 2, "e+301 cells, at most 4294967295"),
+        (["--res", "1e-4", "--bounds", "0,0,300000,0.0001"], 2, "3000000000 x 1 cells, at most 2147483647 in a row"),
         (["--res", "1", "--threads", "²"], 2, "argument --threads: ²: a number from 0 to 4096 is needed"),
         (["--res", "1", "--align", "a.laz"], 2, "either with --res R or with --align"),
         (["--res", "1", "--max-edge", "-2"], 2, "--max-edge -2"),
@@ -365,3 +367,10 @@ def test_files_that_are_refused(las, tmp_path, cadt_terrain):
     (tmp_path / "o.gpkg").symlink_to("o.tif")
     cadt_terrain("raster", "flat.laz", "o.tif", *res, code=3)  # the older file stays
     assert read(tmp_path / "o.tif")[1]["crs"] == CRS.from_epsg(2154)
+
+
+def test_rows_of_a_call_have_fewer_than_2_31_cells() -> None:
+    assert rows_at_a_time(Grid(0, 0, 1, 1, 5_000_000, 500), 100) == 429
+    assert rows_at_a_time(Grid(0, 0, 1, 1, 2**31 - 1, 2), 100) == 1
+    assert rows_at_a_time(Grid(0, 0, 1, 1, 4_000_000, 600), 100) == 512
+    assert rows_at_a_time(Grid(0, 0, 1, 1, 1000, 10_000), 100) == 4096

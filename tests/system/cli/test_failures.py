@@ -242,6 +242,12 @@ class Resources(CliTest):
                 self.fails(5, "triangulate", "in.xy", "--backend", backend, "-o", "m.off", says=[backend, "cadt devices"])
         self.assertEqual(self.names(), ["in.xy"])
 
+    def test_more_points_than_fit(self):
+        with self.path("in.f64").open("wb") as file:
+            file.truncate(200 << 30)  # takes neither disk nor time
+        self.fails(3, "triangulate", "in.f64", says=["in.f64 holds more points than fit", "at most 536870910"])
+        self.fails(3, "triangulate", "in.f64", "-f", "f32", says="26843545600 points")
+
     def test_memory_bound(self):
         self.scattered("in.f64", 20000)
         self.fails(6, "triangulate", "in.f64", "-o", "m.off", "--max-memory", "64K", says=["needed: ", "free: "])

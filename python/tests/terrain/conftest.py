@@ -7,6 +7,7 @@ import dataclasses
 import lzma
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -16,7 +17,7 @@ from cadt.terrain import __main__
 from needed import MISSING
 
 if not MISSING:
-    from clouds import ROOT, make_las
+    from clouds import PACKAGES, ROOT, make_las
 
 
 def pytest_ignore_collect(collection_path: pathlib.Path) -> bool | None:
@@ -89,3 +90,26 @@ def cadt_terrain(
         return result
 
     return run
+
+
+def program() -> str:
+    """The program cadt of this build."""
+    beside = pathlib.Path(PACKAGES).parent / "bin" / "cadt"
+    found = os.environ.get("CADT_PROGRAM") or (str(beside) if beside.exists() else shutil.which("cadt"))
+    if found is None:
+        pytest.skip("the program cadt is not there: CADT_PROGRAM names it")
+    return found
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """cadt and cadt-terrain in one folder that is first on PATH, as pip installs them."""
+    folder = tmp_path.parent / (tmp_path.name + "-bin")
+    folder.mkdir()
+    (folder / "cadt").symlink_to(program())
+    script = folder / "cadt-terrain"
+    script.write_text(f"#!{sys.executable}\nimport sys\nfrom cadt.terrain.__main__ import main\nsys.exit(main())\n")
+    script.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setenv("PYTHONPATH", PACKAGES)
+    return folder

@@ -13,7 +13,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(os.environ["CADT_SOURCE"])
-SLEEPS = "echo $$ > {file}\nsleep 60"
+SLEEPS = "echo $$ > {file}\nexec sleep 60"
 
 
 class Scripts(unittest.TestCase):
@@ -68,7 +68,7 @@ class Scripts(unittest.TestCase):
             self.write("scripts/python_env", "if [ $# -gt 0 ]; then pip; fi")
             process = self.start("scripts/test")
             deadline = time.monotonic() + 30
-            while not all(file.exists() and file.read_text().endswith("\n") for file in files):
+            while not all(file.exists() and sleeps(file.read_text()) for file in files):
                 self.assertLess(time.monotonic(), deadline, f"{files} are not there")
                 time.sleep(0.02)
             os.killpg(process.pid, number)
@@ -139,6 +139,13 @@ chmod +x $folder/bin/python""")
         for points in ([], ["1000"], ["2M"], ["1e6"]):
             code, said = self.run_it("scripts/quickstart", *points)
             self.assertEqual(code, 9, said)
+
+
+def sleeps(process):  # and is no shell any more, which may put a signal off until its program has ended
+    try:
+        return Path(f"/proc/{process.strip()}/comm").read_text() == "sleep\n"
+    except OSError:
+        return False
 
 
 def is_alive(process):

@@ -65,9 +65,9 @@ int run(const VerifyCommand& command) {
   }
   if (command.mesh.empty()) throw Failure(exit_usage, "MESH is required: the file with the triangles of POINTS");
   check_standard_input(command);
-  static_cast<void>(read_options(command.input));  // what is wrong with POINTS comes first
+  const io::ReadOptions read = read_options(command.input);  // what is wrong with POINTS comes first
   require_format(command.mesh, command.format, io::mesh_read_formats(), "-t");
-  io::PointSet points = read_input(command.input);
+  io::PointSet points = io::read_points(command.input.path, read);  // more than can be triangulated can be verified
   round_to_floats(points, command.input, command.quiet);
   const io::MeshFile mesh = io::read_mesh(command.mesh, points.size(), lower(command.format), command.base);
   MeshView view;

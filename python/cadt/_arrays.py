@@ -189,22 +189,21 @@ class CuPy(Array):
 
         self.xp = cupy
         self.device = int(a.device.id)
-        self.stream = self.current_stream()
-        self.queue = int(self.stream.ptr)
         with cupy.cuda.Device(self.device):
+            self.stream = cupy.cuda.get_current_stream()
+            self.queue = int(self.stream.ptr)
             super().__init__(a)
 
-    def current_stream(self) -> Any:
-        with self.xp.cuda.Device(self.device):
-            return self.xp.cuda.get_current_stream()
-
+    # Events belong to the device that is current when they are made, and the default stream is that of this device.
     def begin(self) -> None:
-        if (current := self.current_stream()) != self.stream:
-            self.stream.wait_event(current.record())
+        with self.xp.cuda.Device(self.device):
+            if (current := self.xp.cuda.get_current_stream()) != self.stream:
+                self.stream.wait_event(current.record())
 
     def finished(self, result: Any) -> Any:
-        if (current := self.current_stream()) != self.stream:
-            current.wait_event(self.stream.record())
+        with self.xp.cuda.Device(self.device):
+            if (current := self.xp.cuda.get_current_stream()) != self.stream:
+                current.wait_event(self.stream.record())
         return result
 
     def convert(self, a: Any, dtype: str) -> Any:

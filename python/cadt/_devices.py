@@ -49,13 +49,13 @@ class DeviceInfo:
 
 
 def devices() -> list[DeviceInfo]:
-    """All devices of all back ends, usable or not. A missing driver is no error: `reason` names it.
+    """All devices of all back ends, usable or not. A missing driver is no error: `reason` names it. Raises
+    BackendUnavailable in a process that was forked after drivers had been asked.
 
     >>> [d.name for d in cadt.devices() if d.backend == "host"] != []
     True
     """
-    global _touched
-    _touched = True
+    use_drivers()
     return [DeviceInfo(**d) for d in _cadt.devices()]
 
 

@@ -273,7 +273,7 @@ def cells_along(length: float, cell: float) -> float:
     if not math.isfinite(exact):
         return exact
     whole = float(round(exact))
-    return whole if whole >= 1 and abs(exact - whole) <= 1e-9 * whole else float(math.ceil(exact))
+    return whole if whole >= 1 and abs(exact - whole) <= min(1e-9 * whole, 1e-3) else float(math.ceil(exact))
 
 
 def grid_of(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from cadt import InputError, LimitError
 from cadt._points import as_points, as_values, contiguous
+from cadt._queries import cells_along
 
 P = np.random.default_rng(0).random((50, 2))
 SQUARE = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
@@ -289,6 +290,8 @@ def test_sizes_of_cells() -> None:
     for same in (np.array([0.5, 0.25]), [0.5, 0.25], np.array([0.5, 0.25], np.float32)):
         assert np.array_equal(MESH.rasterize(Z, resolution=same), half, equal_nan=True)  # type: ignore[arg-type]
     assert MESH.rasterize(Z, resolution=np.float32(0.5)).shape == (2, 2)
+    for length, cell, cells in ((2.1, 0.3, 7), (1e9 + 0.4, 1, 1e9 + 1), (1e8 + 0.09, 1, 1e8 + 1), (2**31 * 0.1, 0.1, 2**31), (0, 1, 0)):
+        assert cells_along(length, cell) == cells, length
     for wrong in ((1, 2, 3), [1], np.ones((2, 2)), "a", 1j):
         with pytest.raises(InputError, match="one number or two"):
             MESH.rasterize(Z, resolution=wrong)  # type: ignore[arg-type]

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import types
+
 import cadt
 import cadt.cupy
 import numpy as np
 import pytest
+from cadt import _arrays
 
 
 def test_attributes(points: np.ndarray) -> None:
@@ -34,6 +37,43 @@ def test_offsets_beyond_int32() -> None:
     tri.mesh._cache["vertex_neighbors"] = begins, np.zeros(3, np.int32)
     indptr, _ = tri.vertex_neighbor_vertices
     assert indptr.dtype == np.int64 and np.array_equal(indptr, begins)
+
+
+def test_streams_of_another_device_than_the_current() -> None:
+    """Events belong to the current device, and the default stream is that of the current device: as in CUDA."""
+    current, waits = [0], []
+
+    class Device:
+        def __init__(self, number: int) -> None:
+            self.number = number
+
+        def __enter__(self) -> None:
+            self.before, current[0] = current[0], self.number
+
+        def __exit__(self, *_: object) -> None:
+            current[0] = self.before
+
+    class Stream:
+        def __init__(self, ptr: int, device: int | None = None) -> None:
+            self.ptr, self.device = ptr, device
+
+        def place(self) -> tuple[int, int]:
+            return current[0] if self.device is None else self.device, self.ptr
+
+        def record(self) -> tuple[int, int]:
+            assert self.place()[0] == current[0], "an event of another device than its stream"
+            return self.place()
+
+        def wait_event(self, event: tuple[int, int]) -> None:
+            waits.append((self.place(), event))
+
+    default = Stream(0)
+    cuda = types.SimpleNamespace(Device=Device, get_current_stream=lambda: default)
+    arrays = _arrays.CuPy.__new__(_arrays.CuPy)
+    arrays.xp, arrays.device, arrays.stream = types.SimpleNamespace(cuda=cuda), 1, Stream(7, 1)
+    arrays.begin()
+    arrays.finished(None)
+    assert waits == [((1, 7), (1, 0)), ((1, 0), (1, 7))]
 
 
 def test_arguments(rng: np.random.Generator) -> None:

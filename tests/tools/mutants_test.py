@@ -81,7 +81,7 @@ class Outcomes(InAFolder):
         self.assertEqual(self.outcome(run + "echo '[  FAILED  ] A.B, where x = 1 (3 ms)'; exit 1"), ("failed", "A.B"))
         self.assertEqual(self.outcome(run + "exit 3"), ("failed", "exit 3: A.B"))
         self.assertEqual(self.outcome(run + "kill -SEGV $$"), ("failed", "signal 11: A.B"))
-        self.assertEqual(self.outcome(run + "sleep 60", seconds=1), ("failed", "hung: A.B"))
+        self.assertEqual(self.outcome(run + "sleep 60", seconds=5), ("failed", "hung: A.B"))
 
     def test_nothing_ran(self):
         self.assertEqual(self.outcome("echo '[==========] 0 tests from 0 test suites ran.'; echo '[  PASSED  ] 0 tests.'")[0], "empty")

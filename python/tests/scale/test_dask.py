@@ -223,7 +223,7 @@ def test_a_worker_that_is_killed_once(tmp_path: pathlib.Path) -> None:
     ):
         before = set(client.run(os.getpid).values())
         mesh = cadt.dask.triangulate([file], client, Kill(tmp_path, 6), tile_points=120, out=tmp_path / "mesh.cadt")
-        client.wait_for_workers(2)
+        client.wait_for_workers(2, timeout=120)
         assert set(client.run(os.getpid).values()) != before
     assert (tmp_path / "call0").exists()
     require_mesh(mesh, xy)

@@ -96,7 +96,7 @@ def test_the_program_reads_the_same(tmp_path: pathlib.Path, name: str, data: byt
     path = tmp_path / name
     path.write_bytes(data)
     command = [program, "triangulate", path, "--backend", "host", "--quiet", "--stats=-"]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=400)
     assert done.returncode == (3 if points is None else 0), done.stderr
     if points is not None:
         mesh = json.loads(done.stdout)["mesh"]

@@ -163,6 +163,7 @@ def test_a_standard_output_that_cannot_be_written(words, code):
 CLEANING = """
 import signal, sys, time
 from cadt.terrain import __main__ as program
+program.TOGETHER = float(sys.argv[2])
 for number in (signal.SIGINT, signal.SIGTERM):
     signal.signal(number, program._stop)
 try:
@@ -215,7 +216,7 @@ def test_interruption_of_imports(tmp_path, number, what):
 def test_a_second_signal(wait, clean, second):
     """With the first it changes nothing; later it ends the process at once."""
     process = subprocess.Popen(
-        [sys.executable, "-c", CLEANING, "1" if clean else "60"],
+        [sys.executable, "-c", CLEANING, *(("1", "60") if clean else ("60", "0.5"))],
         stdout=subprocess.PIPE,
         text=True,
         env={**os.environ, "PYTHONPATH": PACKAGES},

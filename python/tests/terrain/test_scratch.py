@@ -303,7 +303,7 @@ def test_interruption_removes_the_folder(las, tmp_path, phase):
         assert time.monotonic() < end and process.poll() is None
         time.sleep(0.005)
     process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=100)[1]
+    said = process.communicate(timeout=400)[1]
     assert process.returncode == 130 and said == "cadt: interrupted\n"
     assert [p.name for p in tmp_path.iterdir()] == ["a.las"]
 

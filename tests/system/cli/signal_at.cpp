@@ -9,9 +9,24 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace {
+
+/// The thread that waits for the program's first signal (apps/cadt/interrupt.cpp), which blocks all, and ends when it
+/// has asked for the end.
+bool a_thread_awaits_signals() {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream status(thread.path() / "status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("SigBlk:") && (std::stoull(line.substr(8), nullptr, 16) >> (SIGTERM - 1) & 1) != 0)
+        return true;
+    }
+  }
+  return false;
+}
 
 void signal_if_at(const char* call, const std::string& path) noexcept {
   static int times = 0;
@@ -20,8 +35,9 @@ void signal_if_at(const char* call, const std::string& path) noexcept {
   const char* text = std::getenv("CADT_TEST_SIGNAL_AT");
   if (text == nullptr || std::sscanf(text, "%15s %255s %d %d", wanted, end, &time, &number) != 4) return;
   if (std::string(wanted) != call || !path.ends_with(end) || ++times != time) return;
+  const bool awaited = a_thread_awaits_signals();
   std::raise(number);
-  usleep(300'000);  // a thread of the program takes note of the signal
+  for (int times = 0; awaited && times < 6000 && a_thread_awaits_signals(); ++times) usleep(10'000);
 }
 
 }  // namespace

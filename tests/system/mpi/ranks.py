@@ -81,13 +81,31 @@ class Run:
             found = ranks_of(self.process.pid)
             if number in found:
                 return found[number]
+            if self.process.poll() is not None:
+                break
             time.sleep(0.01)
-        raise AssertionError(f"rank {number} is not there")
+        raise AssertionError(f"rank {number} is not there:\n{''.join(self.lines)}")
+
+    def stopped(self):
+        """Process of the rank that has stopped (`stop_at`), as soon as one has."""
+        end = time.monotonic() + SECONDS
+        while time.monotonic() < end and self.process.poll() is None:
+            for process in ranks_of(self.process.pid).values():
+                with contextlib.suppress(OSError):
+                    if pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(") ")[-1][0] == "T":
+                        return process
+            time.sleep(0.01)
+        raise AssertionError(f"no rank has stopped:\n{''.join(self.lines)}")
 
     def end(self):
         self.process.wait(SECONDS)
         self.reader.join(SECONDS)
         return self.process.returncode, "".join(self.lines)
+
+
+def stop_at(place):
+    """Environment of a run whose rank stops where it comes to `place` first (tests/system/cli/signal_at.cpp)."""
+    return {"LD_PRELOAD": os.environ["CADT_SIGNAL_AT"], "CADT_TEST_SIGNAL_AT": f"{place} 1 {signal.SIGSTOP.value}"}
 
 
 def folder_in_memory():

@@ -11,7 +11,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from ranks import ANYWHERE, MPI_PROGRAM, MPIRUN, RankTest, digest  # noqa: E402
+from ranks import ANYWHERE, MPI_PROGRAM, MPIRUN, RankTest, digest, stop_at  # noqa: E402
 
 
 class FaultTest(RankTest):
@@ -144,10 +144,10 @@ class RanksThatDiffer(FaultTest):
         self.name = self.generate("uniform", 300000, "large.f64")
         self.options[3] = 50000
         before = self.whole()
-        with self.running(3, self.name, *self.options) as run:
-            limited = run.rank(2)
-            run.wait_for("sample 0 %")  # MPI has made files of its own by then
-            resource.prlimit(limited, resource.RLIMIT_FSIZE, (4096, 4096))
+        with self.running(3, self.name, *self.options, environment=stop_at("mkdir mesh.cadt")) as run:
+            stopped = run.stopped()  # MPI has made files of its own by then
+            resource.prlimit(run.rank(2), resource.RLIMIT_FSIZE, (4096, 4096))
+            os.kill(stopped, signal.SIGCONT)
             code, text = run.end()
         self.assertEqual(code, 3, text)
         self.assertEqual(text.count("cadt: error:"), 1, text)
@@ -157,12 +157,22 @@ class RanksThatDiffer(FaultTest):
         self.assertEqual(self.resumed(), before)
 
 
+def node_written(number):
+    return f"rename unfinished/node-{number:06}"
+
+
 class KillTest(FaultTest):
     # Whatever the others do when a rank is killed, what was finished is there, and --resume makes the rest.
-    def kill(self, marker, rank, ranks=3, more=()):
-        with self.running(ranks, self.name, *self.options, *more) as run:
-            run.wait_for(marker)
+    def kill(self, rank, marker=None, node=None):
+        """Where the progress says `marker`, or where the rank that has written `node` waits."""
+        with self.running(3, self.name, *self.options, environment=stop_at(node_written(node)) if node else None) as run:
+            if node:
+                stopped = run.stopped()
+            else:
+                run.wait_for(marker)
             os.kill(run.rank(rank), signal.SIGKILL)
+            if node:
+                os.kill(stopped, signal.SIGCONT)
             code, text = run.end()
         self.assertNotEqual(code, 0, text)
         complete = self.path("mesh.cadt/manifest.json")
@@ -178,9 +188,9 @@ class Killed(KillTest):
 
     def test_then_resume(self):
         before = self.whole()
-        for marker, rank in (("tiles 20 %", 1), ("tiles 60 %", 0)):
-            with self.subTest(marker):
-                self.kill(marker, rank)
+        for node, rank in ((3, 1), (30, 0)):  # of 127
+            with self.subTest(node=node):
+                self.kill(rank, node=node)
                 left = self.finished()
                 self.assertGreater(len(left), 0)
                 _, text = self.tiles(4, self.name, *self.options, "--resume")
@@ -192,9 +202,10 @@ class Killed(KillTest):
 
     def test_interrupted(self):
         before = self.whole()
-        with self.running(3, self.name, *self.options) as run:
-            run.wait_for("tiles 20 %")
+        with self.running(3, self.name, *self.options, environment=stop_at(node_written(12))) as run:
+            stopped = run.stopped()
             os.kill(run.rank(1), signal.SIGTERM)
+            os.kill(stopped, signal.SIGCONT)
             code, text = run.end()
         self.assertEqual(code, 130, text)
         self.assertIn("mesh.cadt can be continued with --resume\ncadt: interrupted", text)
@@ -206,10 +217,10 @@ class KilledThorough(KillTest):
         self.name = self.generate("uniform", 2000000, "large.f64")
         self.options[3] = 20000
         before = self.whole()
-        for marker, more in (("sample", ()), ("shuffle", ()), ("tiles 0 %", ()), ("tiles 50 %", ()), ("links", ())):
+        for marker in ("sample", "shuffle", "tiles 0 %", "tiles 50 %", "links"):
             for rank in (0, 2):
                 with self.subTest(marker=marker, rank=rank):
-                    self.kill(marker, rank if marker != "links" else 0, more=more)
+                    self.kill(rank if marker != "links" else 0, marker=marker)
                     self.assertEqual(self.resumed(), before)
                     shutil.rmtree(self.path("mesh.cadt"))
 
@@ -217,10 +228,8 @@ class KilledThorough(KillTest):
 class Slow(FaultTest):
     def test_a_rank_that_sleeps(self):
         before = self.whole()
-        with self.running(3, self.name, *self.options) as run:
-            run.wait_for("tiles 10 %")
-            sleeping = run.rank(1)
-            os.kill(sleeping, signal.SIGSTOP)
+        with self.running(3, self.name, *self.options, environment=stop_at(node_written(12))) as run:
+            sleeping = run.stopped()
             time.sleep(2)
             self.assertIsNone(run.process.poll())
             os.kill(sleeping, signal.SIGCONT)

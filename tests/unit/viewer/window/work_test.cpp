@@ -204,6 +204,7 @@ TEST(Numbers, AreWrittenAndRead) {
 TEST(Screenshots, NeverOverwrite) {
   const auto before = std::filesystem::current_path();
   const auto folder = std::filesystem::temp_directory_path() / "cadt-screenshot-test";
+  std::filesystem::remove_all(folder);  // of a run that did not end
   std::filesystem::create_directory(folder);
   std::filesystem::current_path(folder);
   EXPECT_EQ(free_picture_name("mesh"), "mesh-1.png");

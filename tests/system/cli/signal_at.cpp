@@ -35,7 +35,7 @@ void signal_if_at(const char* call, const std::string& path) noexcept {
   const char* text = std::getenv("CADT_TEST_SIGNAL_AT");
   if (text == nullptr || std::sscanf(text, "%15s %255s %d %d", wanted, end, &time, &number) != 4) return;
   if (std::string(wanted) != call || !path.ends_with(end) || ++times != time) return;
-  const bool awaited = a_thread_awaits_signals();
+  const bool awaited = number != SIGSTOP && a_thread_awaits_signals();
   std::raise(number);
   for (int times = 0; awaited && times < 6000 && a_thread_awaits_signals(); ++times) usleep(10'000);
 }

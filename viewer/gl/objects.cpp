@@ -10,7 +10,10 @@ namespace cadt::viewer::gl {
 
 void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
 void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
-void delete_program(GLuint id) { glDeleteProgram(id); }
+void delete_program(GLuint id) {
+  glUseProgram(0);  // one that is in use is kept until another is, and ImGui would use it again
+  glDeleteProgram(id);
+}
 
 void delete_memory(GLuint id) { glDeleteMemoryObjectsEXT(1, &id); }
 

@@ -16,6 +16,7 @@
 #include "viewer/window/window.hpp"
 #include "viewer/window/work.hpp"
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -108,7 +109,8 @@ class App {
   double picture_milliseconds = 0, triangulate_milliseconds = 0;
   std::unique_ptr<Window> window;
   std::unique_ptr<Scene> scene;
-  int panel_width = 0;  ///< pixels, right of the mesh
+  int panel_width = 0;                      ///< pixels, right of the mesh
+  std::vector<std::array<float, 4>> cards;  ///< over the mesh, that take the mouse: left, top, right, bottom
 
   // ---- what they ask for ----
   void ask(Command command);

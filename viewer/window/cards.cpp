@@ -133,7 +133,7 @@ void draw_hint(App& app) {
 
 }  // namespace
 
-void begin_card(const App& app, const char* name, float x, float y, float width, bool inputs) {
+void begin_card(App& app, const char* name, float x, float y, float width, bool inputs) {
   const float scale = static_cast<float>(app.view.scale), gap = 16 * scale;
   const float w = static_cast<float>(app.view.camera.width()), h = static_cast<float>(app.view.camera.height());
   ImGui::SetNextWindowPos({gap + x * (w - 2 * gap), gap + y * (h - 2 * gap)}, ImGuiCond_Always, {x, y});
@@ -141,6 +141,9 @@ void begin_card(const App& app, const char* name, float x, float y, float width,
   ImGui::SetNextWindowSizeConstraints({width > 0 ? wide : 0, 0}, {width > 0 ? wide : w - 2 * gap, h - 2 * gap});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 9 * scale);
   ImGui::Begin(name, nullptr, card_flags | (inputs ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoInputs));
+  if (!inputs) return;
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  app.cards.push_back({at.x, at.y, at.x + size.x, at.y + size.y});
 }
 
 void end_card() {
@@ -149,6 +152,7 @@ void end_card() {
 }
 
 void draw_cards(App& app) {
+  app.cards.clear();
   if (app.scene == nullptr) {
     begin_card(app, "##opening", 0.5f, 0.5f, 0);
     ImGui::TextUnformatted("Opening the display ...");

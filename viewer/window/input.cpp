@@ -6,6 +6,8 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -21,6 +23,15 @@ struct Drag {
   int button = 0;
   double x = 0, y = 0;
 };
+
+/// What ImGui wants (WantCaptureMouse) it knows of the pointer's place in the last frame; an event has its own.
+bool takes_mouse(const App& app, double x, double y) {
+  const bool on_card = std::ranges::any_of(app.cards, [&](const std::array<float, 4>& card) {
+    return x >= card[0] && y >= card[1] && x < card[2] && y < card[3];
+  });
+  return app.over_mesh(x, y) && !on_card &&
+         !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
 
 bool is_whole(double v) { return v == std::floor(v); }
 
@@ -59,7 +70,7 @@ Events events_for(App& app) {
     const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
     if (drag->down && button != drag->button) return;  // one drag at a time
     if (down) {
-      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, false, button, x, y};
+      *drag = {takes_mouse(app, x, y), false, false, button, x, y};
       if (drag->down && left) app.guarded([&] { drag->edits = app.press(x, y); });
       return;
     }
@@ -87,7 +98,7 @@ Events events_for(App& app) {
     drag->y = y;
   };
   events.scroll = [&app](double dx, double dy, int modifiers, double x, double y) {
-    if (ImGui::GetIO().WantCaptureMouse || !app.over_mesh(x, y)) return;
+    if (!takes_mouse(app, x, y)) return;
     // A wheel makes whole steps; two fingers make fractions where the system tells them apart, and move sideways.
     const bool fingers = !is_whole(dy) || dx != 0;
     if ((modifiers & control) == 0 && (fingers || (modifiers & shift) != 0)) {

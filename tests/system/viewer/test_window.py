@@ -147,13 +147,28 @@ class Changes(WindowTest):
         self.key("e")
         self.wait("editing")
         x, y = MIDDLE
-        self.xdotool("mousemove", x, y, "sleep", 0.1, "mousedown", 1)
+        self.xdotool("mousemove", WIDTH - 20, y, "sleep", 0.2, "mousemove", x, y, "mousedown", 1)  # from the panel, at once
         self.wait("holds point")
         self.xdotool("click", 3, "sleep", 0.2)
         self.assertFalse([line for line in self.seen if line.startswith("edited")])
         self.xdotool("mousemove", x + 40, y, "sleep", 0.2, "mouseup", 1)
         self.wait("edited")
         self.assertEqual(sum(line.startswith("holds") for line in self.seen), 1)
+        self.quit()
+
+    def test_a_card_over_the_mesh_takes_clicks(self):
+        self.view("--generate", "uniform", "-n", 300, "--size", SIZE)
+        self.wait("loaded")
+        self.key("F1")  # help
+        self.xdotool("sleep", 1)
+        self.click(*MIDDLE)
+        self.xdotool("sleep", 0.2)
+        self.key("Escape", "e")
+        self.wait("editing")
+        self.assertFalse([line for line in self.seen if line.startswith("picked")])
+        self.key("e")
+        self.click(*MIDDLE)
+        self.wait("picked")
         self.quit()
 
     def test_a_click_is_where_the_pointer_was(self):

@@ -134,7 +134,7 @@ class WindowTest(unittest.TestCase):
     def quit(self):
         """Ends the program, which must have met no OpenGL error."""
         self.key("q")
-        self.assertEqual(self.process.wait(SECONDS), 0)
+        self.assertEqual(self.process.wait(SECONDS), 0, self.process.stderr.read())
         self.assertEqual(self.process.stderr.read(), "", "errors belong into the window")
 
     def cadt(self, *arguments):

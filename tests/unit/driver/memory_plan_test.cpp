@@ -118,7 +118,7 @@ TEST_F(Chosen, BatchesSayAtOnceWhatTheyNeed) {
     }
     return std::size_t{0};
   };
-  for (const std::size_t largest : {40000, 400000}) {
+  for (const std::size_t largest : {std::size_t{40000}, std::size_t{400000}}) {
     std::vector<std::size_t> offsets = {0, largest};
     for (int set = 0; set < 100; ++set) offsets.push_back(offsets.back() + 1000);
     const std::size_t bytes = needed(offsets, 1000);

@@ -121,6 +121,8 @@ bool has_segments(const InputOptions& input, const SegmentOptions& options) {
   }
   if (own && (!input.columns.empty() || input.projection != "xy"))
     throw Failure(exit_usage, "--columns and --project are for files of points: leave them out");
+  if (!options.file.empty() && input.projection != "xy")
+    throw Failure(exit_usage, "--project: of the points of --segments x and y are taken: leave it out");
   const bool any = own || !options.file.empty();
   if (!any && (!options.domain.empty() || !options.crossing.empty())) {
     throw Failure(exit_usage, fmt::format("{} is about segments, and there are none: name a file with --segments",
@@ -169,6 +171,9 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
     require_format(options.file, "", io::segment_read_formats(), "");
     std::error_code code;
     const bool same_file = input.path != "-" && std::filesystem::equivalent(input.path, options.file, code);
+    if (same_file && !(input.columns.empty() && input.format.empty()))
+      throw Failure(exit_usage, fmt::format("{} is read as a file of segments: leave --columns and --from out",
+                                            display_name(input.path, true)));
     if (!same_file) graph.points = read_input(input);
     append(graph, graph_of(io::read_segments(options.file)), same_file, options.file, quiet);
   }

@@ -7,11 +7,28 @@
 #include "numbers.hpp"
 #include "text.hpp"
 
+#include <cadt/io/errors.hpp>
+#include <cadt/io/mesh_file.hpp>
+
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
 
 namespace cadt::cli {
 namespace {
 constexpr int most_width = 32000;  // of what io draws, and its height at most
+
+/// Those who read it take the base from the .node file beside it, if that is not an output as well.
+int default_base(const std::string& path, const std::vector<Output>& outputs) {
+  const std::string node = std::filesystem::path(path).replace_extension(".node").string();
+  if (std::ranges::any_of(outputs, [&](const Output& output) { return output.path == node; })) return 0;
+  try {
+    return io::base_beside(path).value_or(0);
+  } catch (const io::FileError&) {  // nor can others read by it
+    return 0;
+  }
+}
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputOptions& o, const std::string& formats, const std::string& indexed) {
@@ -26,7 +43,9 @@ void add_output_options(CLI::App& command, OutputOptions& o, const std::string& 
                       "; default: from each suffix. Once for all outputs, or once for each (auto: from the suffix)")
       ->type_name("FORMAT")
       ->allow_extra_args(false);
-  command.add_option("--base", o.base, "first index in " + indexed + " files: 0 or 1 (default: 0)")
+  command
+      .add_option("--base", o.base,
+                  "first index in " + indexed + " files: 0 or 1 (default: that of the .node file beside it, else 0)")
       ->type_name("0|1")
       ->check(CLI::IsMember({0, 1}).description(""));
   command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
@@ -42,7 +61,6 @@ void add_output_options(CLI::App& command, OutputOptions& o, const std::string& 
 void write_outputs(const std::vector<Output>& outputs, const OutputOptions& options, ProgressLine& line,
                    const std::function<void(const std::string& path, const io::WriteOptions&)>& write) {
   io::WriteOptions how;
-  how.base = options.base;
   how.ascii = options.ascii;
   if (options.width) {  // what is asked for is not made narrower because the points are high
     how.width = *options.width;
@@ -54,6 +72,7 @@ void write_outputs(const std::vector<Output>& outputs, const OutputOptions& opti
       const InPhase phase(writing_phase(output.path));
       line.step(fmt::format("writing {}", display_name(output.path, false)));
       how.format = output.format;
+      how.base = options.base ? *options.base : default_base(output.path, outputs);
       write(output.path, how);
       if (output.path == "-") finish_stdout();
     }

@@ -18,7 +18,7 @@ namespace cadt::cli {
 
 struct OutputOptions {
   std::vector<std::string> outputs, formats;
-  int base = 0;
+  std::optional<int> base;   ///< if not given, that of the .node file beside an output, else 0
   std::optional<int> width;  ///< 1600 if not given, or less where the height would be above 4000
   bool ascii = false;
 };

@@ -35,7 +35,12 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
   };
   std::string text = fmt::format("polygon {} of feature {}: {}", problem.polygon, file.features[problem.polygon],
                                  to_string(problem.status));
-  if (problem.first < 0) return text + ", a ring has no points";
+  if (problem.first < 0) {
+    const auto point = [&](std::size_t p) {
+      return file.ring_offsets[static_cast<std::size_t>(file.polygon_offsets[p])];
+    };
+    return text + (point(problem.polygon) == point(problem.polygon + 1) ? ", it has none" : ", a ring has none");
+  }
   const bool pair = problem.first != problem.second;
   text += pair ? ", the edges from " : " at ";
   text += place(problem.first);
@@ -140,6 +145,7 @@ RegionResult result_of(const io::PolygonsFile& file, const PolygonsResult& polyg
 int run(const PolygonsCommand& command) {
   if (command.input == "-" && command.format.empty())
     throw Failure(exit_usage, "standard input has no suffix; name its format: -f geojson");
+  require_format(command.input, command.format, {"geojson", "json"}, "-f");
   const auto outputs =
       plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), {command.input});
   static_cast<void>(constraint_options(command.segments));  // which may be wrong

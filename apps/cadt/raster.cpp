@@ -26,11 +26,12 @@ struct RasterCommand {
   std::string bounds;
 };
 
-/// Cells of size `cell` that cover `length`. What is whole but for the rounding of decimals (2.1 / 0.3) is whole.
+/// Cells of size `cell` that cover `length`. What is whole but for the rounding of decimals (2.1 / 0.3) is whole, as in
+/// cells_along of python/cadt/_queries.py.
 double cells_along(double length, double cell) {
   const double exact = length / cell;
   const double whole = std::round(exact);
-  return whole >= 1 && std::fabs(exact - whole) <= 1e-9 * whole ? whole : std::ceil(exact);
+  return whole >= 1 && std::fabs(exact - whole) <= std::min(1e-9 * whole, 1e-3) ? whole : std::ceil(exact);
 }
 
 Grid make_grid(const RasterCommand& command, const Box& box) {

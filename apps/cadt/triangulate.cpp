@@ -217,20 +217,18 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
 void judge_dimension(const Triangulation& mesh, const std::string& name, const TriangulateOptions& options) {
   if (mesh.dimension() >= 2) return;
   const std::size_t distinct = mesh.number_of_points() - mesh.duplicates().size();
+  // Of files of segments there is nothing to choose.
+  const bool choice = !has_segments(options.input, options.segments);
   const std::string why = distinct < 3 ? fmt::format("{} distinct {}, at least three are needed", distinct,
                                                      distinct == 1 ? "point" : "points")
                                        : fmt::format("all {} distinct points lie on one line", distinct);
   if (options.strict) {
-    throw Failure(exit_degenerate,
-                  fmt::format("{}: no triangles: {}; check --columns and --project, or leave out --strict "
-                              "to get an empty mesh",
-                              name, why));
+    throw Failure(exit_degenerate, fmt::format("{}: no triangles: {}; {}leave out --strict to get an empty mesh", name,
+                                               why, choice ? "check --columns and --project, or " : ""));
   }
   if (!options.quiet) {
-    say(fmt::format(
-        "cadt: warning: {}: no triangles: {}; the mesh is empty. Check --columns and --project if you expected "
-        "some; --strict makes this an error.\n",
-        name, why));
+    say(fmt::format("cadt: warning: {}: no triangles: {}; the mesh is empty. {}--strict makes this an error.\n", name,
+                    why, choice ? "Check --columns and --project if you expected some; " : ""));
   }
 }
 

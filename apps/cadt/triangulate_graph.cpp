@@ -46,6 +46,12 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   report.triangulate_seconds = watch.lap();
   line.clear();
   judge_dimension(mesh.mesh(), name, options);
+  if (mesh.mesh().dimension() >= 2 && mesh.number_inside() == 0) {
+    const std::string why = fmt::format("{}: no triangles: no region is inside by --domain {}; --domain hull keeps all",
+                                        name, options.segments.domain);
+    if (options.strict) throw Failure(exit_degenerate, why);
+    if (!options.quiet) say(fmt::format("cadt: warning: {}, --strict makes this an error\n", why));
+  }
   note_rounding(mesh, name, options.quiet);
   report.hash = mesh.hash().to_string();
 

@@ -202,8 +202,10 @@ class CADT_API MeshQueries {
   /// The cells within `box`. Their areas sum to that of the box but for rounding; without triangles there are none.
   /// \throws InputError for a box that is not finite or has no area
   [[nodiscard]] VoronoiPolygons voronoi_polygons(const Box& box);
-  /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles.
-  /// Fewer if there are no more. A centre on the hull, or within rounding of it, is in the hull.
+  /// The k largest circumcircles of triangles, which have no point inside, with their centres in the convex hull,
+  /// largest first; fewer if there are no more. A centre on the hull, or within rounding of it, is in the hull.
+  /// Cocircular points give a circle for each of their triangles. A larger circle can have its centre on the boundary
+  /// of the hull, where it is no circumcentre.
   [[nodiscard]] std::vector<Circle> largest_empty_circles(std::size_t k);
   /// The triangles without an edge longer than `max_edge` and with a circumradius of at most `max_radius` (an alpha
   /// shape: H. Edelsbrunner, D. Kirkpatrick, R. Seidel, "On the shape of a set of points in the plane", 1983), and

@@ -17,19 +17,6 @@ struct EleHeader {
 /// "0 0 0 0\n" is the shortest line; the last one may lack its end.
 constexpr std::size_t shortest_line = 8;
 
-/// First index of the .node file beside the .ele; nothing if there is none.
-std::optional<std::int64_t> base_of_node_file(const std::string& path) {
-  const std::string node = sibling(path, ".node");
-  if (path == "-" || !system_file::is_readable(node)) return std::nullopt;
-  const InputFile file(node);
-  TextScanner scanner(file.name(), file.bytes());
-  scanner.need_content_line("the header of a .node file");
-  scanner.need_content_line("a point");
-  const std::int64_t base = scanner.integer("the index of a point");
-  if (base != 0 && base != 1) scanner.fail("the first index is " + std::to_string(base) + ", not 0 or 1");
-  return base;
-}
-
 /// Three numbers a row, as they stand in the file.
 struct Rows {
   std::vector<std::int64_t> values;
@@ -153,7 +140,7 @@ MeshFile read_ele(const InputFile& file, const std::string& path, std::size_t po
   TextScanner scanner(file.name(), file.bytes());
   const EleHeader header = read_ele_header(scanner);
   const Rows rows = read_rows(scanner, header.triangles, header.attributes);
-  const std::int64_t first = base >= 0 ? base : base_of_node_file(path).value_or(recognise_base(rows, points));
+  const std::int64_t first = base >= 0 ? base : base_beside(path).value_or(recognise_base(rows, points));
   TriangleCollector triangles(points, first);
   triangles.reserve(header.triangles);
   for (std::size_t i = 0; i < rows.values.size(); ++i) {
@@ -166,3 +153,19 @@ MeshFile read_ele(const InputFile& file, const std::string& path, std::size_t po
 }
 
 }  // namespace cadt::io::detail
+
+namespace cadt::io {
+
+std::optional<int> base_beside(const std::string& path) {
+  const std::string node = detail::sibling(path, ".node");
+  if (path == "-" || !detail::system_file::is_readable(node)) return std::nullopt;
+  const detail::InputFile file(node);
+  detail::TextScanner scanner(file.name(), file.bytes());
+  scanner.need_content_line("the header of a .node file");
+  scanner.need_content_line("a point");
+  const std::int64_t base = scanner.integer("the index of a point");
+  if (base != 0 && base != 1) scanner.fail("the first index is " + std::to_string(base) + ", not 0 or 1");
+  return static_cast<int>(base);
+}
+
+}  // namespace cadt::io

@@ -234,9 +234,11 @@ class Queries:
         return self._queries().voronoi_polygons(_box(box, "the box is"))
 
     def largest_empty_circles(self, k: int = 1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The k largest circles without a point inside and with the centre in the hull, largest first.
+        """The k largest circumcircles of triangles, which have no point inside, with the centre in the hull, largest first.
 
-        Returns their centres (k, 2), radii (k,) and triangles (k,), whose circumcircles they are.
+        Returns their centres (k, 2), radii (k,) and triangles (k,); fewer if there are no more. Cocircular points give a
+        circle for each of their triangles. A larger circle can have its centre on the boundary of the hull, where it is no
+        circumcentre.
         """
         k = operator.index(k)
         if k < 0:

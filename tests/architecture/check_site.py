@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the site shows every public header and every page of docs/, which scripts/site refuses to build without.
+"""Whether the site shows every public header and every page of docs/, which scripts/site refuses to build without, and
+whether a merge has left its marks in a page.
 
 usage: check_site.py ROOT
 """
@@ -24,6 +25,10 @@ def problems_of(root):
     for page in sorted((root / "docs").glob("*.md")):
         if f"../{page.stem}\n" not in pages:
             yield f"docs/{page.name} is in no list of docs/site/how_it_works.md"
+    for page in sorted([*root.glob("*.md"), *(root / "docs").rglob("*.md")]):
+        for number, line in enumerate(page.read_text().splitlines(), 1):
+            if line.startswith(("<<<<<<< ", ">>>>>>> ")):
+                yield f"{page.relative_to(root)}:{number}: a mark of a merge: {line}"
 
 
 def main():

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/window/app.hpp"
 
-#include "viewer/draw/palette.hpp"
 #include "viewer/gl/errors.hpp"
 #include "viewer/still/scene_values.hpp"
-#include "viewer/window/cards.hpp"
 #include "viewer/window/input.hpp"
-#include "viewer/window/panel.hpp"
 
 #include <cadt/devices.hpp>
 
@@ -66,6 +63,10 @@ void App::run() {
     }
     loading.abandon();
     asking.abandon();
+    asked_.reset();  // what they would have brought is of the mesh that goes
+    coming_.reset();
+    recorded_.reset();
+    if (growing) view.colour = before_growing_;
     editing.reset();
     growing.reset();
     const bool errors = scene != nullptr && !again && gl::errors_seen() != 0;
@@ -101,8 +102,15 @@ void App::session() {
       throw ContextLost("the driver was reset");
     guarded([&] {
       std::exception_ptr error;
-      if (loading.finished(error)) finish_loading(error);
-      if (asking.finished(error)) finish_asking(error);
+      // The end of a task is no event: what it brings (a card that fits its text) takes ImGui two frames, too.
+      if (loading.finished(error)) {
+        frames = 3;
+        finish_loading(error);
+      }
+      if (asking.finished(error)) {
+        frames = 3;
+        finish_asking(error);
+      }
       if (restart_asked_ && !loading.running()) start_loading();
       advance();
       ask_next();
@@ -158,6 +166,7 @@ void App::add_source(Source source) {
 void App::choose_colour(ColourBy colour) {
   view.colour = colour;
   colour_chosen_ = true;
+  before_editing_.reset();
 }
 
 void App::restart() {
@@ -172,6 +181,7 @@ void App::start_loading() {
   stop_editing();  // before the mesher goes
   if (!open_mesher()) return;
   asking.cancel();
+  asked_.reset();  // nobody waits for it: no "Cancelled", and what is drawn stays chosen
   const Source& source = options.sources[current];
   window->set_title("cadt: " + source.name());
   const std::size_t available = options.free_memory ? options.free_memory() : 0;
@@ -234,7 +244,9 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   Scene& s = *scene;
   const auto begin = Clock::now();
   editing.reset();
+  if (growing) view.colour = before_growing_;
   growing.reset();
+  if (before_editing_) view.colour = *std::exchange(before_editing_, std::nullopt);
   points_stale_ = false;
   s.mesh = {};                                           // first: both may not fit
   s.mesh = MeshBuffers::with_room(next->points.size());  // also for points that are edited
@@ -288,7 +300,10 @@ void App::ask(Command command) {
     return;
   }
   if (view.apply(command)) {
-    if (command == Command::next_colour) colour_chosen_ = true;
+    if (command == Command::next_colour) {
+      colour_chosen_ = true;
+      before_editing_.reset();
+    }
     if (command == Command::hull || command == Command::voronoi) update_strokes();
     if (const auto [x, y] = window->cursor(); over_mesh(x, y)) hover(x, y);
     return;
@@ -327,6 +342,7 @@ void App::ask(Command command) {
       return;
     case Command::panel:
       panel_shown = !panel_shown;
+      if (!panel_shown) panel_focused = false;  // else arrows would go to what is not there
       return;
     case Command::focus_panel:
       panel_shown = true;
@@ -364,37 +380,6 @@ void App::ask(Command command) {
     default:
       return;
   }
-}
-
-void App::frame() {
-  const auto [width, height] = window->size();
-  view.scale = options.scale > 0 ? options.scale : window->content_scale();
-  const std::array<float, 4> look{view.dark ? 1.0f : 0.0f, static_cast<float>(view.scale), 0, 0};
-  if (look != look_) window->set_look(view.dark, view.scale);
-  look_ = look;
-  panel_width = panel_shown ? std::min(width / 2, static_cast<int>(340 * view.scale)) : 0;
-  view.resize(width - panel_width, height);
-  if (scene != nullptr && loaded != nullptr) guarded([&] { draw_mesh(screenshot_.has_value()); });
-  if (hover_later_) {
-    const auto [x, y] = window->cursor();
-    guarded([&] { hover(x, y); });
-  }
-  window->begin_frame();
-  const auto shot = std::exchange(screenshot_, std::nullopt);
-  draw_picture(*this);
-  if (shot != Command::screenshot) {
-    if (panel_shown) draw_panel(*this);
-    draw_cards(*this);
-  }
-  const auto ground = palette(view.dark).background;
-  const auto part = [&](int shift) { return static_cast<float>((ground >> shift) & 255u) / 255.0f; };
-  window->end_frame({part(16), part(8), part(0)}, [&] {
-    if (shot) save_screenshot(*shot == Command::screenshot ? width - panel_width : width, height);
-  });
-}
-
-bool App::over_mesh(double x, double y) const {
-  return x >= 0 && y >= 0 && x < view.camera.width() && y < view.camera.height();
 }
 
 }  // namespace cadt::viewer

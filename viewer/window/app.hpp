@@ -184,6 +184,7 @@ class App {
   std::shared_ptr<std::shared_ptr<const Recording>> recorded_;
   ColourBy before_growing_ = ColourBy::area;
   std::optional<ColourBy> ramp_of_growth_;
+  std::optional<ColourBy> before_editing_;  ///< where editing has no such colour
   Triangulators triangulators_;
   std::shared_ptr<const VoronoiDiagram> diagram_;
   std::optional<ColourBy> values_of_;  ///< whose values and ends the renderer has

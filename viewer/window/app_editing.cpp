@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cadt::viewer {
 namespace {
@@ -40,8 +41,10 @@ void App::start_editing() {
   next->last = Clock::now();
   editing = std::move(next);
   view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order};
-  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end())
+  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end()) {
+    before_editing_ = view.colour;
     view.colour = ColourBy::area;
+  }
   say("editing");
 }
 
@@ -52,6 +55,8 @@ void App::stop_editing() {
   editing.reset();
   take_points_back();
   offer_colours();
+  if (before_editing_ && std::find(view.colours.begin(), view.colours.end(), *before_editing_) != view.colours.end())
+    view.colour = *std::exchange(before_editing_, std::nullopt);
   say(fmt::format("edited: {} points {} triangles", scene->mesh.point_count, scene->mesh.triangle_count));
 }
 
@@ -130,6 +135,9 @@ void App::drag_to(double x, double y) {
   Editing& e = *editing;
   const Place at = view.camera.place(x, y);
   const double radius = e.brush * view.scale / std::fabs(view.camera.scale());
+  // Seen from afar, a place beside a box of the largest doubles may be beyond them.
+  const double reach = e.tool == Tool::drag ? 0 : radius;
+  if (!std::isfinite(std::fabs(at[0]) + reach) || !std::isfinite(std::fabs(at[1]) + reach)) return;
   switch (e.tool) {
     case Tool::drag:
       if (e.held) e.points->drag(*e.held, at[0], at[1]);

@@ -5,7 +5,9 @@
 #include "viewer/draw/palette.hpp"
 #include "viewer/still/scene_values.hpp"
 #include "viewer/window/app.hpp"
+#include "viewer/window/cards.hpp"
 #include "viewer/window/overlays.hpp"
+#include "viewer/window/panel.hpp"
 #include "viewer/window/screenshot.hpp"
 
 #include <cadt/verify.hpp>
@@ -336,6 +338,37 @@ void App::save_screenshot(int width, int height) {
     failed.advice = "Start cadt in a folder that you may write to.";
     report(failed);
   }
+}
+
+void App::frame() {
+  const auto [width, height] = window->size();
+  view.scale = options.scale > 0 ? options.scale : window->content_scale();
+  const std::array<float, 4> look{view.dark ? 1.0f : 0.0f, static_cast<float>(view.scale), 0, 0};
+  if (look != look_) window->set_look(view.dark, view.scale);
+  look_ = look;
+  panel_width = panel_shown ? std::min(width / 2, static_cast<int>(340 * view.scale)) : 0;
+  view.resize(width - panel_width, height);
+  if (scene != nullptr && loaded != nullptr) guarded([&] { draw_mesh(screenshot_.has_value()); });
+  if (hover_later_) {
+    const auto [x, y] = window->cursor();
+    guarded([&] { hover(x, y); });
+  }
+  window->begin_frame();
+  const auto shot = std::exchange(screenshot_, std::nullopt);
+  draw_picture(*this);
+  if (shot != Command::screenshot) {
+    if (panel_shown) draw_panel(*this);
+    draw_cards(*this);
+  }
+  const auto ground = palette(view.dark).background;
+  const auto part = [&](int shift) { return static_cast<float>((ground >> shift) & 255u) / 255.0f; };
+  window->end_frame({part(16), part(8), part(0)}, [&] {
+    if (shot) save_screenshot(*shot == Command::screenshot ? width - panel_width : width, height);
+  });
+}
+
+bool App::over_mesh(double x, double y) const {
+  return x >= 0 && y >= 0 && x < view.camera.width() && y < view.camera.height();
 }
 
 }  // namespace cadt::viewer

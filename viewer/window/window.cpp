@@ -102,7 +102,13 @@ struct Window::Handles {
     glfwSetWindowFocusCallback(window, touched);
     glfwSetWindowIconifyCallback(window, touched);
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).events = true; });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).events = true; });
+    // The window moves under a pointer that rests: no event says where in the window that is now.
+    const auto moved = [](GLFWwindow* w, int, int) {
+      of(w).events = true;
+      of(w).pointer.reset();
+    };
+    glfwSetFramebufferSizeCallback(window, moved);
+    glfwSetWindowPosCallback(window, moved);
     glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).events = true; });
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).events = true; });
   }

@@ -3,9 +3,9 @@
 The largest empty circles
 =========================
 
-Where is the largest hole? The largest circles without a point inside, with their centres in the
-convex hull, are circumcircles of triangles. ``largest_empty_circles(k)`` finds the k largest. Many
-of them overlap: here the largest that do not.
+Where are the holes? Circumcircles of triangles have no point inside. ``largest_empty_circles(k)``
+finds the k largest with their centres in the convex hull. (On its boundary a larger circle may have
+its centre.) Many of them overlap: here the largest that do not.
 """
 
 import cadt

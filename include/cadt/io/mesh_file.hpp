@@ -7,6 +7,7 @@
 #include <cadt/triangulation.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,10 @@ struct MeshFile {
 /// from .npz and from the .neigh beside an .ele. \throws FileError, also for an index out of range
 [[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {},
                                  int base = -1);
+
+/// First index of the .node file beside `path`, by which other files of Triangle's beside it are read: 0 or 1, or
+/// nothing if there is none. \throws FileError
+[[nodiscard]] std::optional<int> base_beside(const std::string& path);
 
 [[nodiscard]] std::vector<std::string> mesh_write_formats();
 [[nodiscard]] std::vector<std::string> mesh_read_formats();

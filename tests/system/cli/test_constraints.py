@@ -31,6 +31,38 @@ class Segments(CliTest):
         self.assertRegex(err, r"(?m)^segments    1, which are 1 edges$")
         self.assertRegex(err, r"(?m)^duplicates  2$")
 
+    def test_options_of_points_that_do_not_reach_the_segments(self):
+        self.write("a.obj", "v 0 0 0\nv 5 1 0\nv 5 0 1\nv 5 1 1\nl 1 4\n")
+        self.write("a.txt", "4 1\n0 0\n1 0\n1 1\n0 1\n0 2\n")
+        self.fails(2, "triangulate", "a.obj", "--segments", "a.obj", "--project", "yz", says="--project")
+        self.fails(2, "triangulate", "a.txt", "--segments", "a.txt", "--columns", "2,1", says="leave --columns")
+        self.fails(2, "triangulate", "a.txt", "--segments", "a.txt", "-f", "xy", says="leave --columns and --from")
+
+    def test_a_domain_with_nothing_inside(self):
+        self.write("open.poly", "4 2 0 0\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n3 0\n0 0 1\n1 1 2\n2 2 3\n0\n")
+        said = self.cadt("triangulate", "open.poly", "--domain", "seeds", "-o", "m.off").err
+        self.assertIn("no triangles: no region is inside by --domain seeds", said)
+        self.fails(4, "triangulate", "open.poly", "--domain", "seeds", "--strict", says="--domain hull keeps all")
+        self.assertNotIn("warning", self.cadt("triangulate", "open.poly", "-o", "m.off").err)
+        self.write("one.json", '{"type":"Point","coordinates":[1,1]}')
+        self.assertNotIn("--columns", self.cadt("triangulate", "one.json", "-o", "m.off").err)
+
+    def test_indices_beside_a_node_file(self):
+        """From where it counts, as that is how they are read."""
+        self.write("k.node", "5 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 2 1\n")
+        self.write("k.poly", "0 2\n1 0\n1 2 4\n0\n")
+        self.cadt("triangulate", "k.poly", "-o", "k.edge", "-o", "k.ele", "-q")
+        self.assertEqual(self.path("k.edge").read_text().splitlines()[1].split(), ["1", "2", "4"])
+        self.assertEqual(self.path("k.ele").read_text().splitlines()[1].split()[0], "1")
+        self.cadt("triangulate", "k.node", "-o", "k.ele", "-q")
+        self.cadt("verify", "k.node", "k.ele")
+        self.cadt("triangulate", "k.edge", "-o", "other.poly", "-q")
+        self.assertIn("0  1  3", self.path("other.poly").read_text())
+        self.write("o.node", "5 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 2 1\n")
+        for output, more in (("k.edge", ["--base", "0"]), ("o.edge", ["-o", "o.node"])):
+            self.cadt("triangulate", "k.poly", "-o", output, *more, "-q")
+            self.assertEqual(self.path(output).read_text().splitlines()[1].split(), ["0", "1", "3"], more)
+
     def test_domains_leave_triangles_out(self):
         areas = {}
         for domain in ("hull", "outer", "even_odd", "layers", "seeds"):

@@ -55,6 +55,13 @@ class RasterCommand(CliTest):
             for i, value in enumerate(row):
                 self.assertAlmostEqual(value, plane(0.3 * (i + 0.5), 0.3 * (2 - j + 0.5)), places=9)
 
+    def test_many_columns_cover_the_bounds(self):
+        """A thousandth of a cell at most is rounding, however many there are."""
+        self.write("p.xyz", xyz_text([(0, 0), (2000000.0015, 0), (0, 1), (2000000.0015, 1)]))
+        self.cadt("raster", "p.xyz", "--res", "1", "-o", "d.npy", "-q")
+        with self.path("d.npy").open("rb") as file:
+            self.assertIn(b"(1, 2000001)", file.read(128))
+
     def test_bounds_nodata_and_long_edges(self):
         self.write("p.xyz", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n9 0 1\n9 1 1\n")
         asc = lambda *more: self.cadt("raster", "p.xyz", "--res", "1", "-o", "-", "-t", "asc", *more).out

@@ -156,6 +156,55 @@ class Changes(WindowTest):
         self.assertEqual(sum(line.startswith("holds") for line in self.seen), 1)
         self.quit()
 
+    def test_keys_of_the_keypad_zoom_once(self):
+        self.view("--generate", "uniform", "-n", 200, "--size", SIZE)
+        self.wait("loaded")
+        for plain, keypad in (("plus", "KP_Add"), ("minus", "KP_Subtract")):
+            self.key("f", plain)
+            once = self.screenshot()
+            self.key("f", keypad)
+            self.assertEqual(difference(once, self.screenshot()), 0, keypad)
+        self.quit()
+
+    def test_keys_after_the_panel_is_hidden(self):
+        for name in ("a.xy", "b.xy"):
+            (self.folder / name).write_text("0 0\n1 0\n0 1\n")
+        self.view("a.xy", "b.xy", "--size", SIZE)
+        self.wait("loaded a.xy")
+        self.key("F6", "p", "Next")
+        self.wait("loaded b.xy")
+        self.quit()
+
+    def test_the_colour_after_editing_and_growth(self):
+        (self.folder / "h.xyz").write_text("".join(f"{x} {y} {x * y}\n" for x in range(9) for y in range(9)))
+        self.view("h.xyz", "--size", SIZE)
+        self.wait("loaded")
+        first = self.screenshot()
+        self.key("e")
+        self.wait("editing")
+        self.key("e")
+        self.wait("edited")
+        self.assertEqual(difference(first, self.screenshot()), 0, "coloured by height")
+        self.key("g")
+        self.wait("recorded")
+        self.key("r")
+        self.wait("loaded")
+        self.assertEqual(difference(first, self.screenshot()), 0, "coloured by height")
+        self.quit()
+
+    def test_a_place_beyond_the_largest_double(self):
+        (self.folder / "huge.xy").write_text("0 0\n8e307 0\n0 8e307\n8e307 8e307\n4e307 4e307\n")
+        self.view("huge.xy", "--size", SIZE)
+        self.wait("loaded")
+        self.key(*["minus"] * 8)
+        self.key("e")
+        self.wait("editing")
+        self.drag([MIDDLE, (MIDDLE[0] + 170, MIDDLE[1]), (WIDTH - PANEL - 20, MIDDLE[1])])
+        self.assertEqual(numbers(self.wait("edited"))[0], 5)
+        self.key("e")
+        self.assertGreater(numbers(self.wait("edited"))[1], 0)
+        self.quit()
+
     def test_a_card_over_the_mesh_takes_clicks(self):
         self.view("--generate", "uniform", "-n", 300, "--size", SIZE)
         self.wait("loaded")

@@ -38,8 +38,8 @@ void require_room(const DeviceArray& array, std::size_t needed, const char* what
 
 namespace {
 
-/// 3 * triangle + k of the first constrained edge whose circles are not empty, or -1. It examines each edge from one
-/// side.
+/// 3 * triangle + k of the first edge whose circles are not empty, or -1: of the constrained ones, if the others are
+/// known to have empty ones. It examines each edge from one side.
 std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
   verifier::require_ieee_arithmetic();
   Device& device = ctx.device;
@@ -54,7 +54,7 @@ std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
   for (std::size_t t = 0; t < mesh.triangles; ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t n = across[3 * t + k];
-      if ((flags[t] >> k & 1U) == 0 || n == CADT_NONE || n < t) continue;
+      if ((!mesh.rounded && (flags[t] >> k & 1U) == 0) || n == CADT_NONE || n < t) continue;
       const std::size_t beyond = std::size_t{3} * n + (across[3 * n] == t ? 0U : across[3 * n + 1] == t ? 1U : 2U);
       if (exact_in_circle(corner(3 * t), corner(3 * t + 1), corner(3 * t + 2), corner(beyond)) > 0)
         return static_cast<std::int64_t>(3 * t + k);
@@ -72,7 +72,7 @@ void require_delaunay(Call& call) {
   if (*state.not_delaunay < 0) return;
   throw NotDelaunay("edge " + std::to_string(*state.not_delaunay % 3) + " of triangle " +
                         std::to_string(*state.not_delaunay / 3) +
-                        " is constrained and not Delaunay, but nearest vertices, natural neighbours, Voronoi diagrams "
+                        " is not Delaunay, but nearest vertices, natural neighbours, Voronoi diagrams "
                         "and empty circles take a Delaunay mesh: triangulate the same vertices without segments for "
                         "them",
                     *state.not_delaunay);

@@ -103,6 +103,7 @@ MeshQueries::MeshQueries(PointsView points, const ConstrainedTriangulation& mesh
     points = vertices;
   }
   if (!mesh.rounded_valid()) require_counterclockwise(points, of.triangles());
+  state_->mesh.rounded = added != 0;
   index(*state_, points, of.triangles(), of.neighbors(), true, mesh.edge_flags());
 }
 
@@ -131,6 +132,7 @@ MeshQueries::MeshQueries(Triangulator& triangulator, const DevicePoints& points,
   MeshIndex& index = state_->mesh;
   index.point_count = data.points;
   index.triangles = data.triangle_count;
+  index.rounded = data.added != 0;
   if (data.points != 0) index.points = import_points(call.ctx, points);
   if (!data.rounded_valid) {
     Device& device = call.ctx.device;

@@ -126,7 +126,7 @@ CADT_API cadt_status cadt_find_crossings(const cadt_points* points, const int32_
 
 /* Prepares a constrained mesh for queries; `points`: those that it was made of, which must live as long as the handle.
  * Values are given for the added points as well. Nearest vertices and what else takes a Delaunay mesh is
- * CADT_NOT_DELAUNAY if a constrained edge is not. */
+ * CADT_NOT_DELAUNAY if a constrained edge, or one beside a rounded crossing, is not. */
 CADT_API cadt_status cadt_queries_open_constrained(const cadt_points* points, const cadt_constrained* mesh,
                                                    const cadt_options* options, cadt_queries** queries);
 

@@ -102,8 +102,8 @@ struct DeviceVoronoi {
   DeviceArray vertices, cell_begin, cells, edge_points, edge_vertices;
 };
 
-/// A question that only a Delaunay mesh answers right, and a mesh of which a constrained edge is none of the Delaunay
-/// triangulation: ask that of the same vertices, triangulate(), instead.
+/// A question that only a Delaunay mesh answers right, and a mesh of which an edge (a constrained one, or one beside a
+/// rounded crossing) is none of the Delaunay triangulation: ask that of the same vertices, triangulate(), instead.
 class CADT_API NotDelaunay : public Error {
  public:
   NotDelaunay(const std::string& message, std::int64_t edge) : Error(message), edge_(edge) {}
@@ -130,8 +130,8 @@ class CADT_API NotDelaunay : public Error {
 ///
 /// Constrained meshes answer where queries lie, linear interpolation and rasters (breaklines), circumcentres and
 /// outlines. Nearest vertices (Outside::nearest is such a question), natural neighbours, Voronoi diagrams and empty
-/// circles are right as long as all constrained edges happen to be Delaunay, which the first such question examines in
-/// O(triangles); else it is refused: NotDelaunay.
+/// circles are right as long as all edges, constrained or beside rounded crossings, happen to be Delaunay, which the
+/// first such question examines in O(triangles); else it is refused: NotDelaunay.
 class CADT_API MeshQueries {
  public:
   /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as

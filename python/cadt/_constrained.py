@@ -92,7 +92,7 @@ class ConstrainedDelaunay(Mesh):
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
     `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
-    segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
+    segments, and all edges beside rounded crossings, happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
 
     Examples
     --------

@@ -89,6 +89,25 @@ TEST_P(ConstrainedQueries, BreaklinesShapeRasters) {
     EXPECT_NEAR(queries.interpolate(ditch.z, Points{0.3, y}).front(), Ditch::height(y), 1e-12) << y;
 }
 
+/// Crossings are rounded to places where edges without a constraint are not Delaunay: at 2^52 by whole units.
+TEST_P(ConstrainedQueries, EdgesBesideRoundedCrossingsMayNotBeDelaunay) {
+  constexpr double o = 4503599627370496;
+  std::vector<double> xy;
+  for (const double v : {8., 6., 3., 0., 8., 8., 7., 5., 6., 5., 9., 0., 1., 6., 5., 1.}) xy.push_back(o + v);
+  const std::vector<Segment> segments = {{3, 7}, {6, 2}, {5, 4}};
+  ConstraintOptions exact;
+  exact.crossing = Crossing::exact;
+  const auto mesh = triangulate_constrained(std::span<const double>(xy), segments, exact, options());
+  ASSERT_GT(mesh.added_points().size(), 0U);
+  MeshQueries queries(std::span<const double>(xy), mesh, options());
+  const Points where = {o + 9, o + 4};
+  const auto error = thrown<NotDelaunay>([&] { (void)queries.nearest_vertex(where); });
+  ASSERT_NE(error, nullptr);
+  const auto edge = static_cast<std::size_t>(error->edge());
+  EXPECT_FALSE(mesh.is_constrained(edge / 3, edge % 3));
+  EXPECT_EQ(queries.locate(where).size(), 1U);
+}
+
 TEST_P(ConstrainedQueries, WhatTakesADelaunayMeshIsRefused) {
   const Ditch ditch;
   const std::span<const double> xy(ditch.xy);

@@ -22,10 +22,6 @@ def png(rows, kind=0, *chunks):
 class Polygons(CliTest):
     off = ConstraintTest.off
 
-    def test_a_suffix_that_is_none(self):
-        self.write("x.foo", "")
-        self.fails(2, "polygons", "x.foo", says="-f")
-
     def test_each_is_triangulated_inside(self):
         shifted = [[[x + 10, y] for x, y in ring] for ring in (SQUARE, HOLE)]
         self.write("a.geojson", geojson({"type": "Point", "coordinates": [1, 2]}, polygon(SQUARE, HOLE),

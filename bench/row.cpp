@@ -92,7 +92,6 @@ std::vector<Column> make_columns() {
       counter("ties", &S::ties),
       counter("legality_sweeps", &S::legality_sweeps, always),
       counter("sweep_repairs", &S::sweep_repairs, always),
-      counter("cavities", &S::cavities, always),
       counter("certified_edges", &S::certified_edges, always),
       counter("stabilized_edges", &S::stabilized_edges),
       counter("illegal_edges", &S::illegal_edges, always),

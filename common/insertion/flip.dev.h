@@ -90,8 +90,8 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
 /* Tests an edge and flips it if it is illegal and not constrained. `apex` is the vertex expected opposite, at
  * `apex_point`, or CADT_NONE for any. \post CADT_EDGE_STABILIZED: the edge is illegal and stays so, for now or for good
  * (stabilized_flips.dev.h). CADT_EDGE_FLIPPED: `half_edge` still names an edge opposite the apex, and `*partner` the
- * other one, in the other triangle; `*all_sides`: the apex is not the expected one, so all four sides of the
- * quadrilateral may be illegal. */
+ * other one, in the other triangle; `*all_sides`: all four sides of the quadrilateral may be illegal, and not only
+ * these two: the apex is not the expected one, or others work close by. */
 CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_edge, cadt_u32 apex,
                                       cadt_point apex_point, cadt_u32* partner, cadt_u32* all_sides,
                                       cadt_counters* counters) {
@@ -105,9 +105,11 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
     CADT_ADD_TIME(counters, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
+  /* On GPUs the four sides often are edges of points that others are inserting: whatever they have tested or have yet
+   * to test, it is not this quadrilateral. */
+  *all_sides = CADT_CONTIGUOUS ? (p != apex ? 1u : 0u) : 1u;
   /* Another thread flipped the expected apex away, and did not know that this edge had yet to be tested: it still has
    * to be. */
-  *all_sides = p != apex ? 1u : 0u;
   if (p != apex && apex != CADT_NONE) CADT_COUNT_NOW(counters, CADT_COUNT_STALE_EDGES);
   const cadt_u32 across = s.n0, n = CADT_TRIANGLE_OF(across), j = CADT_EDGE_OF(across);
   CADT_NOISE_AT(m, CADT_SITE_SECOND_TRIANGLE);

@@ -69,6 +69,34 @@ CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
   }
 }
 
+/* The vertex that represents `block` of `level`, by its place among the points. */
+CADT_FN cadt_u32 cadt_standing_vertex(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
+#if CADT_CONTIGUOUS
+  return cadt_representative(level, block, n);
+#else
+  return cadt_rank_of(level, block, n);
+#endif
+}
+
+/* Where the walk to p starts, a point of the half of `block` that is inserted now: at the nearer one of the two
+ * vertices beside it in sorted order, that of the other half and that of the block on its other side. The curve leaves
+ * a row of points and comes back to it from elsewhere, so one of them may be far away, with thousands of triangles in
+ * between.
+ *
+ *     blocks         [ .  2 ][ 5  . ][ .  9 ]
+ *     inserted now     1          6    8         6: from 5 or from 9
+ */
+CADT_FN cadt_u32 cadt_start_beside(const cadt_locked_mesh* m, cadt_u32 level, cadt_u32 block, cadt_u32 n,
+                                   cadt_point p) {
+  const cadt_u32 beside = cadt_right_half(level, block) ? block - 1u : block + 1u;
+  const cadt_u32 v = cadt_standing_vertex(level, block, n);
+  const cadt_u32 w = beside < cadt_blocks_of(level, n) ? cadt_standing_vertex(level, beside, n) : v;
+  const cadt_u32 at_v = cadt_load_relaxed(m->vertex_to_triangle + v),
+                 at_w = cadt_load_relaxed(m->vertex_to_triangle + w);
+  const cadt_point a = cadt_point_of(m, v), b = cadt_point_of(m, w);
+  return cadt_fabs(a.x - p.x) + cadt_fabs(a.y - p.y) <= cadt_fabs(b.x - p.x) + cadt_fabs(b.y - p.y) ? at_v : at_w;
+}
+
 #if CADT_BUILDS(INSERTION)
 /* Points and input ids in that order. */
 CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 n,
@@ -99,8 +127,7 @@ CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, c
 
 #if CADT_BUILDS(INSERTION)
 /* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then one level: of each
- * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it, with a walk from the
- * representative, which is in the mesh and near in sorted order. */
+ * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it. */
 CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
             cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
@@ -131,13 +158,11 @@ CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32
           } else {
             const cadt_u32 block = begin + (u - listed);
 #if CADT_CONTIGUOUS
-            const cadt_u32 inserted_half = 2u * block + cadt_right_half(level + 1u, block);
-            i = cadt_representative(level, inserted_half ^ 1u, n);
-            start = cadt_load_relaxed(mesh.vertex_to_triangle + cadt_representative(level, inserted_half, n));
+            i = cadt_representative(level, 2u * block + (cadt_right_half(level + 1u, block) ^ 1u), n);
 #else
             i = cadt_blocks_of(level + 1u, n) + block;
-            start = cadt_load_relaxed(mesh.vertex_to_triangle + cadt_rank_of(level + 1u, block, n));
 #endif
+            start = cadt_start_beside(&mesh, level + 1u, block, n, cadt_point_of(&mesh, i));
           }
           u += CADT_SPREAD_STEP(grain);
           tries = 0u;

@@ -9,7 +9,6 @@
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
-#include "common/insertion/cavity_retriangulation.hpp"
 #include "common/insertion/drop_locks.hpp"
 #include "common/insertion/locked_mesh.hpp"
 #include "common/overlay/growth_snapshots.hpp"
@@ -29,7 +28,6 @@ constexpr unsigned partition_level = 5;
 constexpr int stalled_launches = 4;  // launches without progress after which one work-item does everything
 constexpr int unresolvable_launches = 64;
 constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
-constexpr int first_cascade_search = 4;      // the launch before which flip cascades are looked for first
 constexpr int max_sweeps = 2000;
 constexpr std::size_t sweep_counts = 5;
 
@@ -252,11 +250,7 @@ class IncrementalInsertion {
 
   /// Launches for what got no locks, until nothing is deferred.
   void finish_deferred() {
-    int launches = 0, stalled = 0, next_cascade_search = first_cascade_search;
-    // Edges that are deferred by several launches may be in long flip cascades; but with Stabilize they may be meant to
-    // stay.
-    const bool may_be_cascades = mesh_.stabilize == CADT_STABILIZE_OFF;
-    CavityRetriangulation cavities(mesh_);
+    int launches = 0, stalled = 0;
     std::size_t last = 0;
     while (deferred_.points != 0 || deferred_.edges != 0) {
       const std::size_t remaining = std::size_t{deferred_.points} + deferred_.edges;
@@ -264,14 +258,6 @@ class IncrementalInsertion {
       last = remaining;
       if (++launches > unresolvable_launches && stalled > unresolvable_launches) {
         give_up("no progress: ", deferred_.points, " points and ", deferred_.edges, " edges cannot get their locks");
-      }
-      if (may_be_cascades && deferred_.edges != 0) {
-        if (launches == next_cascade_search - 1) cavities.remember(deferred_edges_[1], deferred_.edges);
-        if (launches == next_cascade_search) {
-          const std::size_t made = cavities.retriangulate(deferred_edges_[1], deferred_.edges);
-          ctx_.statistics.cavities += made;
-          next_cascade_search *= made != 0 ? 2 : 4;
-        }
       }
       // A single work-item meets no conflict, so it always makes progress.
       launch_insert(0, 0, 0, stalled >= stalled_launches);

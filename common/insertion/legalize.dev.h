@@ -44,8 +44,9 @@ CADT_FN void cadt_report_changes(const cadt_counters* counters, CADT_GLOBAL cadt
 }
 
 /* Edges that a work-item has yet to test: `next`, if there is one, then those in a ring from `first` on, the newest
- * before others, so that a fan of flips stays small. `apex` is the inserted vertex: then only edges opposite of it can
- * become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, and a flip adds all four sides. */
+ * before others, so that a fan of flips stays small. `apex` is the inserted vertex: then, if nobody else works close
+ * by, only edges opposite of it can become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, and a flip
+ * adds all four sides, as all flips do on GPUs (docs/insertion.md, "Legalization"). */
 typedef struct {
   cadt_u32* half_edge; /* the ring, of CADT_WORKLIST */
   cadt_u32 next, first, size, apex;

@@ -45,28 +45,17 @@
   X(cadt_duplicate_pairs)   /* duplicates.dev.h */
 
 /* common/insertion */
-#define CADT_INSERTION_KERNELS(X)                                                          \
-  X(cadt_find_seed_triangle)   /* seed_triangle.dev.h: three points not on a line */       \
-  X(cadt_seed_mesh)            /* seed_triangle.dev.h */                                   \
-  X(cadt_first_representative) /* insert.dev.h */                                          \
-  X(cadt_by_level)             /* insert.dev.h: order of insertion on GPUs */              \
-  X(cadt_insert)               /* insert.dev.h: locate, split, legalise */                 \
-  X(cadt_legalize_edges)       /* legalize.dev.h: deferred edges */                        \
-  X(cadt_insert_partitions)    /* partitioned.dev.h: without locks */                      \
-  X(cadt_border_sweep)         /* partitioned.dev.h: edges between partitions */           \
-  X(cadt_cavity_candidates)    /* cavity.dev.h: vertices at which flip cascades may end */ \
-  X(cadt_cavity_sizes)         /* cavity.dev.h */                                          \
-  X(cadt_cavity_conflicts)     /* cavity.dev.h: conflict region of a vertex */             \
-  X(cadt_cavity_star)          /* cavity.dev.h */                                          \
-  X(cadt_cavity_roots)         /* cavity.dev.h */                                          \
-  X(cadt_cavity_join)          /* cavity.dev.h */                                          \
-  X(cadt_cavity_check)         /* cavity.dev.h */                                          \
-  X(cadt_cavity_keep)          /* cavity.dev.h */                                          \
-  X(cadt_cavity_boundary)      /* cavity.dev.h */                                          \
-  X(cadt_cavity_fill)          /* cavity.dev.h: a fan in its place */                      \
-  X(cadt_cavity_release)       /* cavity.dev.h */                                          \
-  X(cadt_legality_sweep)       /* legality_sweep.dev.h: test and repair all edges */       \
-  X(cadt_flag_triangles)       /* drop_locks.dev.h */                                      \
+#define CADT_INSERTION_KERNELS(X)                                                    \
+  X(cadt_find_seed_triangle)   /* seed_triangle.dev.h: three points not on a line */ \
+  X(cadt_seed_mesh)            /* seed_triangle.dev.h */                             \
+  X(cadt_first_representative) /* insert.dev.h */                                    \
+  X(cadt_by_level)             /* insert.dev.h: order of insertion on GPUs */        \
+  X(cadt_insert)               /* insert.dev.h: locate, split, legalise */           \
+  X(cadt_legalize_edges)       /* legalize.dev.h: deferred edges */                  \
+  X(cadt_insert_partitions)    /* partitioned.dev.h: without locks */                \
+  X(cadt_border_sweep)         /* partitioned.dev.h: edges between partitions */     \
+  X(cadt_legality_sweep)       /* legality_sweep.dev.h: test and repair all edges */ \
+  X(cadt_flag_triangles)       /* drop_locks.dev.h */                                \
   X(cadt_drop_locks)           /* drop_locks.dev.h: the mesh in arrays */
 
 /* common/stars: proven local stars, gift wrapping, assembly, stitching */

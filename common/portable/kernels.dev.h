@@ -12,7 +12,6 @@
 #include "common/constraints/domains/domains.dev.h"
 #include "common/constraints/insert/segment_cavity.dev.h"
 #include "common/constraints/insert/segment_mountain.dev.h"
-#include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"
 #include "common/insertion/legality_sweep.dev.h"

@@ -216,16 +216,6 @@ enum {
   CADT_CERTIFY_REAL = 4 /* place of the number of real triangles among the words of cadt_certify */
 };
 
-/* Words that are counted for the conflict region of a vertex (cavity.dev.h). */
-enum { CADT_CAVITY_LISTED, CADT_CAVITY_KEPT, CADT_CAVITY_SIDES, CADT_CAVITY_SPOKES, CADT_CAVITY_WORDS };
-enum {
-  CADT_CAVITY_CANDIDATES = 8,  /* vertices whose regions are counted at a time */
-  CADT_CAVITY_SET_WORDS = 512, /* a power of two */
-  CADT_CAVITY_SCRATCH = 4      /* words a triangle */
-};
-/* The bit of a vertex in such a set. */
-#define CADT_CAVITY_BIT(vertex) ((vertex)*2654435761u >> 17 & (32u * CADT_CAVITY_SET_WORDS - 1u))
-
 enum {
   CADT_DEFERRED_COUNTS = 3 /* points, edges, work-items that changed the mesh (legalize.dev.h) */
 };

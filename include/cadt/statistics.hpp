@@ -60,7 +60,6 @@ struct Statistics {
   std::uint64_t ties = 0;              ///< incircle predicates that were zero and were decided by symbolic perturbation
   std::uint64_t legality_sweeps = 0;   ///< sweeps over all edges at the end; the last one found no illegal edge
   std::uint64_t sweep_repairs = 0;     ///< illegal edges that the legality sweeps found and repaired
-  std::uint64_t cavities = 0;          ///< conflict regions that were retriangulated as a whole (docs/insertion.md)
   std::uint64_t certified_edges = 0;   ///< edges that the last legality sweep examined and found legal
   std::uint64_t stabilized_edges = 0;  ///< times that an illegal edge was left because of `Tuning::stabilize`
   std::uint64_t illegal_edges = 0;     ///< illegal edges of the result: 0, except with Stabilize::paper
@@ -128,7 +127,6 @@ inline constexpr NamedCounter counters_of_work[] = {
     {"ties", &Statistics::ties},
     {"legality_sweeps", &Statistics::legality_sweeps},
     {"sweep_repairs", &Statistics::sweep_repairs},
-    {"cavities", &Statistics::cavities},
     {"certified_edges", &Statistics::certified_edges},
     {"stabilized_edges", &Statistics::stabilized_edges},
     {"illegal_edges", &Statistics::illegal_edges},

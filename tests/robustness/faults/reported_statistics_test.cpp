@@ -36,7 +36,6 @@ std::map<std::string, std::string> fields_of(const Statistics& s) {
                                                            {"ties", s.ties},
                                                            {"legality_sweeps", s.legality_sweeps},
                                                            {"sweep_repairs", s.sweep_repairs},
-                                                           {"cavities", s.cavities},
                                                            {"certified_edges", s.certified_edges},
                                                            {"stabilized_edges", s.stabilized_edges},
                                                            {"illegal_edges", s.illegal_edges},

@@ -72,6 +72,17 @@ TEST_P(WorstCases, Hub) {
   }
 }
 
+// Each flip owes the checks of all edges that it can make illegal. With those opposite of the new point alone, a card
+// leaves 4 % of uniform points with an illegal edge, and of a parabola flip cascades of tens of thousands of flips.
+TEST_P(WorstCases, LeaveHardlyAnIllegalEdgeToTheSweep) {
+  constexpr std::size_t n = 200000;
+  for (const Points& xy : {uniform_points(n), parabola_points(n), two_clusters(n)}) {
+    const Triangulation mesh = triangulate(std::span<const double>(xy), with_locks());
+    EXPECT_LE(mesh.statistics().sweep_repairs, n / 1000);
+    EXPECT_LE(mesh.statistics().legality_sweeps, 2U);
+  }
+}
+
 TEST_P(WorstCases, RotationsOfALattice) {
   const std::size_t rotations = number_from("CADT_ROTATIONS", 1000), side = 32, per_batch = 250;
   Triangulator triangulator(GetParam().options());

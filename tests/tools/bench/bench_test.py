@@ -20,7 +20,7 @@ EXPERIMENTS = ["sizes", "blocks", "breakdown", "distributions", "snapshots", "fl
 COUNTERS = ["launches", "walk_steps", "lock_attempts", "lock_failures", "invalid_restarts", "insert_retries", "stale_edges",
             "deferred_points", "deferred_edges", "splits", "edge_splits", "flips", "incircle_tests",
             "orientation_tests", "exact_orientations", "exact_incircles", "ties", "legality_sweeps", "sweep_repairs",
-            "cavities", "certified_edges", "stabilized_edges", "illegal_edges", "refined_points", "bytes_device_peak"]
+            "certified_edges", "stabilized_edges", "illegal_edges", "refined_points", "bytes_device_peak"]
 # What the report reads: a change here is one there.
 COLUMNS = (["experiment", "distribution", "points", "who", "backend", "device", "threads", "block", "stabilize",
             "threshold", "epsilon", "detail", "strategy", "warmups", "runs", "median_ms", "min_ms", "max_ms",

@@ -14,7 +14,7 @@ from pathlib import Path
 
 COUNTERS = ("launches walk_steps lock_attempts lock_failures invalid_restarts insert_retries stale_edges deferred_points "
             "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
-            "exact_incircles ties legality_sweeps sweep_repairs cavities certified_edges stabilized_edges illegal_edges "
+            "exact_incircles ties legality_sweeps sweep_repairs certified_edges stabilized_edges illegal_edges "
             "refined_points bytes_device_peak").split()
 COLUMNS = ("experiment distribution points who backend device threads block stabilize threshold epsilon detail strategy "
            "warmups runs median_ms min_ms max_ms device_ms triangles hash occupancy differing_triangles".split() + COUNTERS +

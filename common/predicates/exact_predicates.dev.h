@@ -87,7 +87,7 @@ CADT_FN cadt_real cadt_lost_by_sum(cadt_real a, cadt_real b, cadt_real sum) {
   return (a - (sum - part)) + (b - part);
 }
 
-#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+#if CADT_GRADUAL_UNDERFLOW
 /* A sum of two doubles, the second at most half a unit in the last place of the first (T. J. Dekker, "A floating-point
  * technique for extending the available precision", 1971). The self-test checks what this needs of a device: sums and
  * products are rounded to nearest, one by one. */
@@ -123,7 +123,9 @@ CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
   const double lost = ((au * bu - product) + au * bl + al * bu) + al * bl;
   return cadt_pair_of(product, lost + (a.high * b.low + a.low * b.high));
 }
+#endif
 
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
 /* The sign of the incircle determinant by sums of two doubles, 0 if they do not decide. The filter's bound is `max_det`
  * / 2, about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings
  * of a product, each below 2^-102. */

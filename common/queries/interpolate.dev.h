@@ -16,13 +16,19 @@ CADT_FN cadt_real cadt_cross(cadt_real ax, cadt_real ay, cadt_real bx, cadt_real
 CADT_FN cadt_real cadt_positive(cadt_real x) { return x > 0.0 ? x : 0.0; }
 
 /* The area of the parallelogram of two arms from p, where rounding would leave too little of it. */
-#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
-CADT_FN_SLOW cadt_real cadt_area_of_arms(cadt_point p, cadt_point a, cadt_point b) {
-  cadt_pair right = cadt_pair_product(cadt_pair_difference(a.y, p.y), cadt_pair_difference(b.x, p.x));
+#if CADT_GRADUAL_UNDERFLOW
+CADT_FN cadt_real cadt_cross_of_pairs(cadt_pair ax, cadt_pair ay, cadt_pair bx, cadt_pair by) {
+  cadt_pair right = cadt_pair_product(ay, bx);
   right.high = -right.high;
   right.low = -right.low;
-  return cadt_pair_sum(cadt_pair_product(cadt_pair_difference(a.x, p.x), cadt_pair_difference(b.y, p.y)), right).high;
+  return cadt_pair_sum(cadt_pair_product(ax, by), right).high;
 }
+#if !CADT_WIDE
+CADT_FN_SLOW cadt_real cadt_area_of_arms(cadt_point p, cadt_point a, cadt_point b) {
+  return cadt_cross_of_pairs(cadt_pair_difference(a.x, p.x), cadt_pair_difference(a.y, p.y),
+                             cadt_pair_difference(b.x, p.x), cadt_pair_difference(b.y, p.y));
+}
+#endif
 #endif
 
 /* A triangle is thin if rounding may change its area by 2^-26 of it; from 2^-36 on, areas are sums of two doubles. */
@@ -68,6 +74,57 @@ CADT_FN void cadt_scale_axis(cadt_real a, cadt_real b, cadt_real c, cadt_real p,
 }
 #endif
 
+#if CADT_GRADUAL_UNDERFLOW && CADT_WIDE
+#define CADT_EXPONENT_OF_0 (-5000) /* less than of any other difference, once scaled */
+/* Exponent of a - p, also of a subnormal one. */
+CADT_FN cadt_i32 cadt_exponent_of_difference(cadt_real a, cadt_real p) {
+  const cadt_i32 e = cadt_exponent_of_largest(a - p, 0.0, 0.0, 0.0);
+  if (a == p) return CADT_EXPONENT_OF_0;
+  if (e == CADT_OVERFLOWED) return 1025;
+  return e > -1022 ? e : cadt_exponent_of_largest(0x1p60 * (a - p), 0.0, 0.0, 0.0) - 60;
+}
+/* a - p times 2^-e; what overflows is halved first. */
+CADT_FN cadt_pair cadt_scaled_difference(cadt_real a, cadt_real p, cadt_i32 e) {
+  const cadt_u32 halved = cadt_fabs(a - p) < CADT_INFINITY ? 0u : 1u;
+  cadt_pair d = halved ? cadt_pair_difference(0.5 * a, 0.5 * p) : cadt_pair_difference(a, p);
+  if (halved) --e;
+  d.high = cadt_ldexp(d.high, -e);
+  d.low = cadt_ldexp(d.low, -e);
+  return d;
+}
+/* Areas that p = q[3] makes with two each of q[0] to q[2], but for a common factor, where rounding or underflow would
+ * leave too little of them. x and y are scaled apart to at most 1, then each arm by 2^-e to about 1; as two of three
+ * areas have a factor of an arm, the third one is divided by it instead. With a 1 on both axes, no area underflows that
+ * counts. */
+CADT_FN_SLOW cadt_weights cadt_areas_of_arms(const cadt_point* q) {
+  cadt_pair x[3], y[3];
+  cadt_i32 e[3], least = 0, ex = CADT_EXPONENT_OF_0, ey = CADT_EXPONENT_OF_0;
+  cadt_weights areas; /* an array, and loops that are not unrolled: the caller needs registers */
+  CADT_ROLLED
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_i32 of_x = cadt_exponent_of_difference(q[k].x, q[3].x),
+                   of_y = cadt_exponent_of_difference(q[k].y, q[3].y);
+    ex = of_x > ex ? of_x : ex;
+    ey = of_y > ey ? of_y : ey;
+  }
+  CADT_ROLLED
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_i32 of_x = cadt_exponent_of_difference(q[k].x, q[3].x) - ex,
+                   of_y = cadt_exponent_of_difference(q[k].y, q[3].y) - ey;
+    e[k] = of_x > of_y ? of_x : of_y;
+    x[k] = cadt_scaled_difference(q[k].x, q[3].x, ex + e[k]);
+    y[k] = cadt_scaled_difference(q[k].y, q[3].y, ey + e[k]);
+    least = e[k] < least ? e[k] : least;
+  }
+  CADT_ROLLED
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_u32 i = CADT_NEXT(k), j = CADT_PREV(k);
+    areas.at[k] = cadt_ldexp(cadt_positive(cadt_cross_of_pairs(x[i], y[i], x[j], y[j])), least - e[k]);
+  }
+  return areas;
+}
+#endif
+
 /* Barycentric coordinates of p in the triangle a, b, c that contains it: not negative, their sum is 1 but for rounding.
  * At a vertex they are exactly 0 and 1. `thin`: whether the triangle is. */
 CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_u32* thin) {
@@ -89,6 +146,14 @@ CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, 
     result.at[0] = cadt_positive(cadt_area_of_arms(p, b, c));
     result.at[1] = cadt_positive(cadt_area_of_arms(p, c, a));
     result.at[2] = cadt_positive(cadt_area_of_arms(p, a, b));
+    all = result.at[0] + result.at[1] + result.at[2];
+    if (!(all > 0.0)) return cadt_along_longest(u, v, w);
+  }
+#elif CADT_GRADUAL_UNDERFLOW
+  if (all < CADT_ROUNDED * terms || all < CADT_UNDERFLOW) {
+    cadt_point q[4];
+    q[0] = a, q[1] = b, q[2] = c, q[3] = p;
+    result = cadt_areas_of_arms(q);
     all = result.at[0] + result.at[1] + result.at[2];
     if (!(all > 0.0)) return cadt_along_longest(u, v, w);
   }

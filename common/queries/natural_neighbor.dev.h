@@ -95,11 +95,22 @@ CADT_FN cadt_real cadt_rise_along(const cadt_query_mesh* m, cadt_u32 t, cadt_rea
   return ((fb - fa) * cadt_cross(way.x, way.y, ac.x, ac.y) - (fc - fa) * cadt_cross(way.x, way.y, ab.x, ab.y)) / area;
 }
 
+/* A factor for values, 1 unless those of triangle t are so small that their products with the areas of pieces, which
+ * may be 2^-480 and less, would underflow. A function of its own: nothing of it stays in registers. */
+CADT_FN_SLOW cadt_real cadt_factor_of_values(const cadt_query_mesh* m, cadt_u32 t, CADT_GLOBAL const cadt_real* values,
+                                             cadt_u32 per_point, cadt_u32 of) {
+  const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
+                 c = cadt_vertex_of(&m->view, t, 2u);
+  const cadt_real fa = values[a * per_point + of], fb = values[b * per_point + of], fc = values[c * per_point + of];
+  return cadt_fabs(fa) + cadt_fabs(fb) + cadt_fabs(fc) < 0x1p-480 ? 0x1p540 : 1.0;
+}
+
 /* Value `of` at p in triangle t, strictly inside of the hull, by the boundary of its cavity from edge `begin` on.
  * Infinite or NaN where a circumcentre has overflowed, or rounding has changed the weights. */
 CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_u32 t, cadt_cavity_edge begin,
                                      CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of,
                                      cadt_u32* open) {
+  const cadt_real factor = cadt_factor_of_values(m, t, values, per_point, of);
   cadt_cavity_edge e = begin;
   cadt_point v = cadt_corner(m, e.triangle, CADT_PREV(e.k)), mean = {0.0, 0.0};
   cadt_point center = cadt_center_seen_from(cadt_center_of(p, cadt_corner(m, e.triangle, CADT_NEXT(e.k)), v), p);
@@ -112,7 +123,7 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
     if (weight != 0.0) {
       const cadt_point arm = cadt_seen_from(v, p);
       all += weight;
-      sum += weight * values[id * per_point + of];
+      sum += weight * (factor * values[id * per_point + of]);
       mean.x += weight * arm.x;
       mean.y += weight * arm.y;
     }
@@ -126,9 +137,10 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
   mean.y /= all;
   const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
                  c = cadt_vertex_of(&m->view, t, 2u);
-  const cadt_real fa = values[a * per_point + of], fb = values[b * per_point + of], fc = values[c * per_point + of];
+  const cadt_real fa = factor * values[a * per_point + of], fb = factor * values[b * per_point + of],
+                  fc = factor * values[c * per_point + of];
   const cadt_real correction = cadt_rise_along(m, t, fa, fb, fc, mean), rise = cadt_fabs(fb - fa) + cadt_fabs(fc - fa);
-  return cadt_fabs(correction) <= CADT_ROUNDED * rise ? sum / all - correction : CADT_NAN;
+  return cadt_fabs(correction) <= CADT_ROUNDED * rise ? (sum / all - correction) / factor : CADT_NAN;
 }
 
 /* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot

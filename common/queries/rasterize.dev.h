@@ -176,6 +176,13 @@ CADT_FN void cadt_meet_edge(cadt_point a, cadt_point b, cadt_real low_y, cadt_re
                             cadt_real* high) {
   const cadt_real below = a.y < b.y ? a.y : b.y, above = a.y < b.y ? b.y : a.y;
   if (below > high_y || above < low_y) return;
+#if CADT_WIDE
+  if (above - below == CADT_INFINITY) { /* has overflowed: anywhere */
+    *low = -CADT_INFINITY;
+    *high = CADT_INFINITY;
+    return;
+  }
+#endif
   for (cadt_u32 side = 0u; side < 2u; ++side) {
     cadt_real along = above > below ? ((side ? high_y : low_y) - a.y) / (b.y - a.y) : (side ? 1.0 : 0.0);
     along = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;

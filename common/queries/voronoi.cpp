@@ -116,8 +116,13 @@ VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box
   write_cells(ctx, mesh, begin, none);
   const Allocation rows = ctx.memory.allocate((3 * mesh.triangles + 5 * n) * sizeof(cadt_point));
   const Allocation sizes = ctx.memory.allocate((n + 1) * word);
-  QueryMesh in{mesh.view(), scale_for(ctx, mesh, bounds_of_sides(box))};
-  if (in.by.wide) in.by.scale = 0.25;  // so that no difference overflows
+  const Bounds sides = bounds_of_sides(box);
+  QueryMesh in{mesh.view(), scale_for(ctx, mesh, sides)};
+  if (in.by.wide) {  // far from subnormal numbers, but such that no difference or sum overflows
+    const int exponent = 1021 - std::max(mesh.bounds.high, sides.high);
+    in.by.scale = std::ldexp(1.0, exponent / 2);
+    in.by.scale_again = std::ldexp(1.0, exponent - exponent / 2);
+  }
   const auto scaled = [&](double side) { return side * in.by.scale * in.by.scale_again; };
   launch.run<KernelId::cadt_clip_cells>(in, mesh.lowest, begin, scaled(box.min_x), scaled(box.min_y), scaled(box.max_x),
                                         scaled(box.max_y), rows, sizes, launch.grid(n));

@@ -227,6 +227,93 @@ TEST_P(Scales, AVertexOfAThinTriangleHasItsValue) {
   EXPECT_EQ(mesh_of(xy).queries.interpolate(Doubles{5, 6, 7}, xy), (Doubles{5, 6, 7}));
 }
 
+/// Weights of eighths in a triangle of 2^-51 at most across, in sets that take the narrow and the wide variant.
+TEST_P(Scales, ThinTrianglesKeepTheirAreasBesideAnyDouble) {
+  for (const double other : {0.0, 1e-60, 1e-300})
+    for (const int exponent : {0, -900, 900}) {
+      SCOPED_TRACE(testing::Message() << other << " by 2^" << exponent);
+      const Points xy{0, 0, 0.5, 0.5 + 0x1p-51, 1, 1, other, 1};
+      auto mesh = mesh_of(times(xy, std::ldexp(1.0, exponent)));
+      for (int k = 1; k < 4; ++k) {
+        const Points at = times({0.25, 0.25 + k * 0x1p-54}, std::ldexp(1.0, exponent));
+        EXPECT_DOUBLE_EQ(mesh.queries.interpolate(Doubles{0, 1, 0, 0}, at).at(0), k / 8.0);
+        EXPECT_DOUBLE_EQ(mesh.queries.interpolate(Doubles{1, 0, 0, 0}, at).at(0), 0.75 - k / 16.0);
+      }
+    }
+}
+
+/// Seen from the two small corners, the third is in the direction of (1, 1).
+TEST_P(Scales, WeightsBesideACornerThatIsAnyFactorAway) {
+  const double u = std::numeric_limits<double>::denorm_min();
+  for (const double far : {0x1p-900, 0x1p-600, 1.0, 0x1p600, 1.7e308})
+    for (const double near : {u, 0x1p-1030, 0x1p-1010}) {
+      SCOPED_TRACE(testing::Message() << far << " " << near);
+      auto mesh = mesh_of({0, 4 * near, 4 * near, 0, far, far});
+      const Points at{2 * near, 4 * near, 3 * near, 3 * near, 3 * near, 1 * near, 0, 4 * near};
+      const auto found = mesh.queries.interpolate(Doubles{1, 2, 3}, at);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], (Doubles{1.25, 1.5, 1.75, 1})[i], 1e-15) << i;
+    }
+}
+
+TEST_P(Scales, RastersOfAllDoublesHaveNoGaps) {
+  const double most = 1.7e308;
+  for (const Points& xy : {Points{-most, -most, most, -most, 0, most, 0.1 * most, -1e-300},
+                           Points{-most, -most, most, -most, most, most, -most, most},
+                           Points{-most, 0.9 * most, -0.9 * most, -most, most, -0.95 * most, 0, most}}) {
+    auto all = mesh_of(xy);
+    const Doubles values{0, 1, 2, 3};
+    const Grid grid{-0.5 * most, -0.5 * most, most / 32, most / 16, 30, 14};
+    const auto cells = all.queries.rasterize(grid, values);
+    Points centres;
+    for (std::size_t j = 0; j < grid.rows; ++j)
+      for (std::size_t i = 0; i < grid.columns; ++i) {
+        centres.push_back(grid.x0 + (static_cast<double>(i) + 0.5) * grid.dx);
+        centres.push_back(grid.y0 + (static_cast<double>(j) + 0.5) * grid.dy);
+      }
+    const auto one_by_one = all.queries.interpolate(values, centres);
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!std::isnan(one_by_one[i])) ++inside;
+      ASSERT_EQ(std::isnan(cells[i]), std::isnan(one_by_one[i])) << "cell " << i;
+      if (!std::isnan(cells[i])) {
+        ASSERT_DOUBLE_EQ(cells[i], one_by_one[i]) << "cell " << i;
+      }
+    }
+    EXPECT_GT(inside, 200U);
+  }
+}
+
+TEST_P(Scales, NaturalNeighboursOfTinyValues) {
+  const Points asked = times(random(400), 0x1p-60);
+  auto mesh = mesh_of(joined(times(random(50), 0x1p-60), {-1, -1, 1, -1, 0, 1}));
+  Doubles values = random(27);
+  values.resize(53);
+  const auto expected = mesh.queries.interpolate(values, asked, Interpolation::natural);
+  for (const int exponent : {-900, -960, -1000, 500}) {
+    SCOPED_TRACE(exponent);
+    const double factor = std::ldexp(1, exponent);
+    EXPECT_EQ(mesh.queries.interpolate(times(values, factor), asked, Interpolation::natural), times(expected, factor));
+  }
+}
+
+TEST_P(Scales, CellsOfPointsOneSubnormalApartDoNotOverlap) {
+  const double u = std::numeric_limits<double>::denorm_min();
+  for (const double apart : {1.0, 2.0, 3.0, 4.0}) {
+    SCOPED_TRACE(apart);
+    const auto cells = mesh_of({0, 0, apart * u, 0, 0, apart * u, apart * u, apart * u, 1, 1, -1, 0.5, 0.5, -1})
+                           .queries.voronoi_polygons({-5 * u, -5 * u, 8 * u, 8 * u});
+    double area = 0;
+    for (std::size_t v = 0; v < 7; ++v)
+      for (std::size_t i = cells.begin[v]; i < cells.begin[v + 1]; ++i) {
+        const std::size_t j = i + 1 < cells.begin[v + 1] ? i + 1 : cells.begin[v];
+        const auto in_units = [&](std::size_t k) { return cells.xy[k] / u; };
+        area += (in_units(2 * i) * in_units(2 * j + 1) - in_units(2 * i + 1) * in_units(2 * j)) / 2;
+      }
+    EXPECT_NEAR(area, 13 * 13, std::fmod(apart, 2) == 0 ? 0 : 2 * 13) << "but for the rounding of two lines";
+  }
+}
+
 CADT_ON_MAIN_BACKENDS(Scales);
 
 }  // namespace

@@ -74,8 +74,8 @@ void add_row(std::vector<cadt_point>& points, std::uint32_t count, double y, std
   for (std::uint32_t i = 0; i < count; ++i) points.push_back({(i + 0.5) / count + shift(random), y + shift(random)});
 }
 
-// The order goes along three rows, each from the left to the right, as a curve comes back to a row from elsewhere. Blocks
-// that have the end of a row and the beginning of another one have halves that are far apart.
+// The order goes along three rows, each from the left to the right, as a curve comes back to a row from elsewhere.
+// Blocks that have the end of a row and the beginning of another one have halves that are far apart.
 TEST(WalkStart, RowsToWhichTheOrderComesBack) {
   std::mt19937 random(1);
   std::vector<cadt_point> points;

@@ -73,8 +73,8 @@ bool stays_crowded(std::span<const cadt_point> sample, const KeyGrid& grid) {
                        std::floor((0.5 * p.y - grid.half_min_y) * grid.scale));
   }
   std::ranges::sort(cells);
-  const auto others = cells.end() - std::unique(cells.begin(), cells.end());
-  return 8 * others < static_cast<std::ptrdiff_t>(cells.size());
+  const auto distinct = std::unique(cells.begin(), cells.end()) - cells.begin();
+  return 8 * distinct < static_cast<std::ptrdiff_t>(cells.size());
 }
 
 constexpr int most_fine_levels = 15, fewest_fine_levels = 4;

@@ -240,6 +240,12 @@ TEST_P(Wrap, FinerKeysOnCards) {
   EXPECT_EQ(s.wrapped_stars, card ? s.distinct : 0u);
   EXPECT_EQ(s.refined_points == 0, card) << s.refined_points;
 }
+// But not where they would not tell most points apart, which a sample of larger sets tells.
+TEST_P(Wrap, FinerKeysWhereTheyTellPointsApart) {
+  const Statistics apart = check(cluster_points(17000), Strategy::automatic);
+  EXPECT_EQ(apart.refined_points == 0, made_by_card(apart, GetParam().backend)) << apart.refined_points;
+  EXPECT_GT(check(two_clusters(17000), Strategy::automatic).refined_points, 16000U);
+}
 CADT_ON_EVERY_BACKEND(Wrap);
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -53,10 +54,22 @@ void parse(int argc, char** argv, bool print_help, RankAction& action) {
   if (!action) throw Failure(exit_usage, "a command is missing; see: cadt-mpi --help");
 }
 
+/// Slurm and MPI that do not know each other make one rank of each task, which would do the work of all.
+void require_ranks_of_slurm(const mpi::Communicator& ranks) {
+  const char* const tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr;
+  if (ranks.size() > 1 || by_mpirun || tasks == nullptr || std::strtoul(tasks, nullptr, 10) < 2) return;
+  throw Failure(exit_usage,
+                fmt::format("Slurm has started {} tasks, but each is the only rank of its own: this MPI needs "
+                            "srun --mpi=pmix, or --mpi=pmi2 (srun --mpi=list), or mpirun",
+                            tasks));
+}
+
 int parse_and_run(mpi::Communicator& ranks, int argc, char** argv) {
   RankAction action;
   ranks.agree([&] { parse(argc, argv, ranks.rank() == 0, action); });
   if (!action) return exit_done;
+  require_ranks_of_slurm(ranks);
   install_interrupt_handlers();
   const InPhase phase(Phase::cooperative);
   return action(ranks);

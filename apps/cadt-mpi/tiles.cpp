@@ -128,7 +128,7 @@ void add_mpi_tiles(CLI::App& app, RankAction& chosen) {
       "      one rank for each GPU of a machine that has eight\n"
       "  mpirun -n 4 --map-by ppr:1:node --bind-to none cadt-mpi tiles points.f64 -o mesh.cadt --backend host\n"
       "      one rank on each machine, with all of its cores\n"
-      "  srun --ntasks-per-node=4 --gpus-per-node=4 cadt-mpi tiles country/*.npy -o country.cadt --resume\n"
+      "  srun --mpi=pmix --ntasks-per-node=4 --gpus-per-node=4 cadt-mpi tiles country/*.npy -o country.cadt --resume\n"
       "      goes on after an interruption, also with another number of ranks\n\n" +
       std::string(exit_codes_of_tiles));
   command->callback(

@@ -7,9 +7,11 @@
 #include "system.hpp"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <mutex>
 #include <thread>
 
@@ -60,16 +62,23 @@ BOOL WINAPI on_console_event(DWORD /*event*/) {
 
 constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
 int pipe_ends[2] = {-1, -1};
-volatile std::sig_atomic_t listening[signals.size()] = {};
+constexpr long long at_once = 200;  // milliseconds: Slurm sends the same signal twice, two milliseconds apart
+std::atomic<long long> first_at{0};
+static_assert(std::atomic<long long>::is_always_lock_free);
 
-extern "C" void on_signal(int) {
+extern "C" void on_signal(int number) {
   const int saved = errno;
-  // From now on each of the signals has its default effect, whatever the process is blocked in.
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (listening[i]) std::signal(signals[i], SIG_DFL);
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const long long at = now.tv_sec * 1000LL + now.tv_nsec / 1000000 + 1;
+  long long before = 0;
+  if (first_at.compare_exchange_strong(before, at)) {
+    const char byte = 1;
+    [[maybe_unused]] const auto written = write(pipe_ends[1], &byte, 1);
+  } else if (at - before >= at_once) {  // the default effect, whatever the process is blocked in
+    std::signal(number, SIG_DFL);
+    std::raise(number);
   }
-  const char byte = 1;
-  [[maybe_unused]] const auto written = write(pipe_ends[1], &byte, 1);
   errno = saved;
 }
 
@@ -115,16 +124,15 @@ void install_interrupt_handlers() {
   std::thread(wait_for_signal).detach();
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 
-  for (std::size_t i = 0; i < signals.size(); ++i) {
+  for (const int number : signals) {
     struct sigaction old {};
-    if (sigaction(signals[i], nullptr, &old) != 0 || old.sa_handler == SIG_IGN) continue;
+    if (sigaction(number, nullptr, &old) != 0 || old.sa_handler == SIG_IGN) continue;
     struct sigaction action {};
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     for (const int other : signals) sigaddset(&action.sa_mask, other);
-    listening[i] = 1;
-    sigaction(signals[i], &action, nullptr);
+    sigaction(number, &action, nullptr);
   }
 }
 

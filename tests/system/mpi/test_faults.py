@@ -25,11 +25,12 @@ class FaultTest(RankTest):
 
     def whole(self):
         """sha256 of the mesh that nothing has disturbed."""
-        if self.name not in self.undisturbed:
+        key = (self.name, self.path(self.name).stat().st_size, *self.options)
+        if key not in self.undisturbed:
             self.tiles(1, self.name, *self.options, "-q")
-            self.undisturbed[self.name] = digest(self.path("mesh.cadt"))
+            self.undisturbed[key] = digest(self.path("mesh.cadt"))
             shutil.rmtree(self.path("mesh.cadt"))
-        return self.undisturbed[self.name]
+        return self.undisturbed[key]
 
     def resumed(self, ranks=3, more=()):
         self.tiles(ranks, self.name, *self.options, "--resume", "-q", *more)
@@ -54,6 +55,8 @@ class WrongInput(FaultTest):
                    says="there is no command 'tils'; did you mean tiles?")
         self.fails(2, 2, "-o", "mesh.cadt", says="name files")
         self.fails(2, 3, self.name, "--tile-points", 2, says="at least 3")
+        self.fails(2, 1, command=[MPI_PROGRAM, "tiles", self.name, *map(str, self.options)],
+                   environment={"SLURM_STEP_NUM_TASKS": "4"}, says=["4 tasks", "srun --mpi=pmix"])
         self.fails(3, 2, "missing.f64", *self.options, says="missing.f64")
         text = " ".join(self.tiles(1, "--help")[0].split())
         self.assertIn("0: the cores that it may use, divided among the ranks there", text)
@@ -203,6 +206,7 @@ class Killed(KillTest):
                 shutil.rmtree(self.path("mesh.cadt"))
 
     def test_interrupted(self):
+        self.name = self.generate("uniform", 400000, "large.f64")  # so many that work is left when the signal is heard
         before = self.whole()
         with self.running(3, self.name, *self.options, environment=stop_at(node_written(12))) as run:
             stopped = run.stopped()

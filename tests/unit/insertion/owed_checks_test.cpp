@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points that are inserted at the same time, by the text of GPUs: in whatever order their splits and flips come, no
 // illegal edge is left. (What a thread reads may be old, so the legality sweep looks at all edges still.)
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
+#include "gpu_insertion.hpp"
+
 #include <memory>
 #include <random>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 namespace {
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/portable/atomics.dev.h"
-// From here on as in a build for GPUs; the atomics remain those of the host.
-#undef CADT_CONTIGUOUS
-#define CADT_CONTIGUOUS 0
-#include "common/insertion/insert.dev.h"
-#include "common/insertion/seed_triangle.dev.h"
-#pragma GCC diagnostic pop
 
 /// A point on its way, with the edges that it has yet to test.
 struct Lane {
@@ -35,22 +19,12 @@ struct Lane {
   cadt_worklist work{};
 };
 
-class Launch {
+class Launch : private SeededMesh {
  public:
-  Launch(std::vector<cadt_point> points, std::uint32_t seed)
-      : points_(std::move(points)), locked_(2 * points_.size()), hints_(points_.size()), random_(seed) {
-    mesh_.locked = locked_.data();
-    mesh_.points = points_.data();
-    mesh_.vertex_to_triangle = hints_.data();
-    mesh_.second = 1;
-    mesh_.third = 2;
-    mesh_.center = {(points_[0].x + points_[1].x + points_[2].x) / 3, (points_[0].y + points_[1].y + points_[2].y) / 3};
-    cadt_counters_clear(&counters_);
-    cadt_make_seed_mesh(&mesh_, &counters_);
-  }
+  Launch(const std::vector<cadt_point>& of, std::uint32_t seed) : SeededMesh(of), random_(seed) {}
 
-  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
-  [[nodiscard]] std::uint32_t retries() const { return counters_.count[CADT_COUNT_STALE_EDGES]; }
+  using SeededMesh::size;
+  [[nodiscard]] std::uint32_t met_others() const { return counters.count[CADT_COUNT_STALE_EDGES]; }
 
   /// Points begin, ..., end - 1: at each step one of them does what comes next.
   void insert(std::uint32_t begin, std::uint32_t end) {
@@ -66,7 +40,7 @@ class Launch {
         continue;
       }
       const std::size_t lane = (which - waiting.size()) / 4;
-      cadt_legalize_next(&mesh_, &lanes[lane]->work, &deferred_, &counters_);
+      cadt_legalize_next(&mesh, &lanes[lane]->work, &deferred, &counters);
       if (cadt_worklist_pending(&lanes[lane]->work)) continue;
       std::swap(lanes[lane], lanes.back());
       lanes.pop_back();
@@ -76,12 +50,12 @@ class Launch {
 
   [[nodiscard]] std::uint64_t illegal_edges() {
     std::uint64_t illegal = 0;
-    for (std::uint32_t t = 0; t < locked_.size(); ++t)
-      for (std::uint32_t k = 0; k < 3 && locked_[t].word[CADT_WORD_LOCK] != 0; ++k) {
-        const cadt_snapshot s = cadt_snapshot_from(&mesh_, t, k);
-        const cadt_snapshot u = cadt_snapshot_from(&mesh_, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+    for (std::uint32_t t = 0; t < locked.size(); ++t)
+      for (std::uint32_t k = 0; k < 3 && locked[t].word[CADT_WORD_LOCK] != 0; ++k) {
+        const cadt_snapshot s = cadt_snapshot_from(&mesh, t, k);
+        const cadt_snapshot u = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
         EXPECT_EQ(u.n0, CADT_HALF_EDGE(t, k));
-        illegal += cadt_is_illegal(&mesh_, s.v0, s.v1, s.v2, u.v0, &counters_);
+        illegal += cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters);
       }
     return illegal / 2;
   }
@@ -92,30 +66,23 @@ class Launch {
   [[nodiscard]] std::unique_ptr<Lane> split(std::uint32_t i) {
     auto lane = std::make_unique<Lane>();
     cadt_worklist_begin(&lane->work, i, CADT_FLIP_LIMIT);
-    lane->work.apex_point = points_[i];
-    cadt_u32 start = hints_[0];
-    lane->work.size = cadt_try_insert(&mesh_, i, points_[i], &start, lane->work.half_edge, &counters_);
+    lane->work.apex_point = points[i];
+    cadt_u32 start = hints[0];
+    lane->work.size = cadt_try_insert(&mesh, i, points[i], &start, lane->work.half_edge, &counters);
     EXPECT_EQ(lane->work.size, 3U) << "nobody holds a lock between two steps";
     return lane;
   }
 
   /// What a launch would leave to the next one.
   void take_deferred(std::vector<std::unique_ptr<Lane>>& lanes) {
-    for (cadt_u32 e = 0; e < counts_[1]; ++e) {
+    for (cadt_u32 e = 0; e < counts[1]; ++e) {
       lanes.push_back(std::make_unique<Lane>());
       cadt_worklist_begin(&lanes.back()->work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
-      lanes.back()->work.next = edges_[e];
+      lanes.back()->work.next = edges[e];
     }
-    counts_[1] = 0;
+    counts[1] = 0;
   }
 
-  std::vector<cadt_point> points_;
-  std::vector<cadt_locked_triangle> locked_;
-  std::vector<cadt_u32> hints_, edges_ = std::vector<cadt_u32>(1U << 16);
-  cadt_u32 counts_[CADT_DEFERRED_COUNTS] = {};
-  cadt_deferred deferred_ = {edges_.data(), counts_, 1U << 16};
-  cadt_locked_mesh mesh_{};
-  cadt_counters counters_{};
   std::mt19937 random_;
 };
 
@@ -140,7 +107,7 @@ void expect_legal(const std::vector<cadt_point>& points, std::uint32_t seed) {
     launch.insert(begin, std::min(end, launch.size()));
     EXPECT_EQ(launch.illegal_edges(), 0U) << "after " << end << " points, order " << seed;
   }
-  EXPECT_GT(launch.retries(), 0U) << "nobody has met another";
+  EXPECT_GT(launch.met_others(), 0U) << "nobody has met another";
 }
 
 TEST(OwedChecks, UniformPoints) {

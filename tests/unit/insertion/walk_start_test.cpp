@@ -1,70 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where walks start, by the text of GPUs, in whose order the points are: a launch takes as long as its longest walk.
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
+#include "gpu_insertion.hpp"
+
 #include <random>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 namespace {
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/portable/atomics.dev.h"
-// From here on as in a build for GPUs; the atomics remain those of the host.
-#undef CADT_CONTIGUOUS
-#define CADT_CONTIGUOUS 0
-#include "common/insertion/insert.dev.h"
-#include "common/insertion/seed_triangle.dev.h"
-#pragma GCC diagnostic pop
 
 struct Walks {
   std::uint32_t longest = 0;
   double mean = 0;
 };
 
+std::vector<cadt_point> by_level(const std::vector<cadt_point>& sorted) {
+  const auto count = static_cast<std::uint32_t>(sorted.size());
+  std::vector<cadt_point> points(count);
+  for (std::uint32_t i = 0; i < count; ++i) points[cadt_rank_of(0, i, count)] = sorted[i];
+  return points;
+}
+
 /// Inserts `sorted` one after another, level by level.
 Walks insert_all(const std::vector<cadt_point>& sorted) {
-  const auto n = static_cast<std::uint32_t>(sorted.size());
-  std::vector<cadt_point> points(n);
-  for (std::uint32_t i = 0; i < n; ++i) points[cadt_rank_of(0, i, n)] = sorted[i];
-  std::vector<cadt_locked_triangle> locked(2 * sorted.size());
-  std::vector<cadt_u32> hints(n), edges(n);
-  cadt_u32 counts[CADT_DEFERRED_COUNTS] = {};
-  const cadt_deferred deferred = {edges.data(), counts, n};
-  cadt_locked_mesh mesh{};
-  mesh.locked = locked.data();
-  mesh.points = points.data();
-  mesh.vertex_to_triangle = hints.data();
-  mesh.second = 1;
-  mesh.third = 2;
-  mesh.center = {(points[0].x + points[1].x + points[2].x) / 3, (points[0].y + points[1].y + points[2].y) / 3};
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
-  cadt_make_seed_mesh(&mesh, &counters);
+  SeededMesh m(by_level(sorted));
+  const std::uint32_t n = m.size();
   CADT_DECLARE_WORKLIST(work);
   Walks walks;
   for (std::uint32_t level = 32U - static_cast<std::uint32_t>(__builtin_clz(n - 1)); level-- > 0;)
     for (std::uint32_t block = 0; block < cadt_blocks_of(level, n) / 2; ++block) {
-      const std::uint32_t i = cadt_blocks_of(level + 1, n) + block, before = counters.count[CADT_COUNT_WALK_STEPS];
+      const std::uint32_t i = cadt_blocks_of(level + 1, n) + block, before = m.counters.count[CADT_COUNT_WALK_STEPS];
       if (i <= 2) continue;  // of the seed triangle
-      cadt_u32 start = cadt_start_beside(&mesh, level + 1, block, n, points[i]);
+      cadt_u32 start = cadt_start_beside(&m.mesh, level + 1, block, n, m.points[i]);
       cadt_worklist_begin(&work, i, 1U << 20);
-      work.apex_point = points[i];
-      work.size = cadt_try_insert(&mesh, i, points[i], &start, work.half_edge, &counters);
+      work.apex_point = m.points[i];
+      work.size = cadt_try_insert(&m.mesh, i, m.points[i], &start, work.half_edge, &m.counters);
       EXPECT_GT(work.size, 0U);
-      hints[i] = start;
-      walks.longest = std::max(walks.longest, counters.count[CADT_COUNT_WALK_STEPS] - before);
-      cadt_legalize(&mesh, &work, &deferred, &counters);
+      m.hints[i] = start;
+      walks.longest = std::max(walks.longest, m.counters.count[CADT_COUNT_WALK_STEPS] - before);
+      cadt_legalize(&m.mesh, &work, &m.deferred, &m.counters);
     }
-  EXPECT_EQ(counts[1], 0U);
-  walks.mean = static_cast<double>(counters.count[CADT_COUNT_WALK_STEPS]) / n;
+  EXPECT_EQ(m.counts[1], 0U);
+  walks.mean = static_cast<double>(m.counters.count[CADT_COUNT_WALK_STEPS]) / n;
   return walks;
 }
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * The legality sweep: tests every edge of the mesh once and repairs illegal ones. With many threads the mesh is correct
- * only after it: the thread that inserts a point tests the edges opposite of it, which is enough only if nobody else
- * changes the star of the point meanwhile. The last sweep finds nothing and so certifies the mesh.
+ * only after it: what a thread has tested may have been old, and on CPUs it tests the edges opposite of its point
+ * alone, which is enough only if nobody else changes the star of the point meanwhile. The last sweep finds nothing and
+ * so certifies the mesh.
  */
 #ifndef CADT_INSERTION_LEGALITY_SWEEP_H
 #define CADT_INSERTION_LEGALITY_SWEEP_H

@@ -40,4 +40,15 @@ void for_each_set(std::size_t most, const std::function<void(const Asked&)>& tes
 /// Whether all coordinates of the set and of its near queries lie within 240 binades.
 [[nodiscard]] bool narrow(const Asked& set);
 
+/// Centres of the cells, row by row.
+inline Points centers(const Grid& grid) {
+  Points result;
+  for (std::size_t j = 0; j < grid.rows; ++j)
+    for (std::size_t i = 0; i < grid.columns; ++i) {
+      result.push_back(grid.x0 + (static_cast<double>(grid.first_column + i) + 0.5) * grid.dx);
+      result.push_back(grid.y0 + (static_cast<double>(grid.first_row + j) + 0.5) * grid.dy);
+    }
+  return result;
+}
+
 }  // namespace cadt::test

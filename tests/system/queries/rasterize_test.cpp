@@ -10,15 +10,6 @@ namespace {
 
 class Rasterize : public BackendTest {
  protected:
-  static Points centers(const Grid& grid) {
-    Points result;
-    for (std::size_t j = 0; j < grid.rows; ++j)
-      for (std::size_t i = 0; i < grid.columns; ++i) {
-        result.push_back(grid.x0 + (static_cast<double>(grid.first_column + i) + 0.5) * grid.dx);
-        result.push_back(grid.y0 + (static_cast<double>(grid.first_row + j) + 0.5) * grid.dy);
-      }
-    return result;
-  }
   static bool same(const std::vector<double>& a, const std::vector<double>& b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)

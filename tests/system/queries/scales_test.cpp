@@ -212,13 +212,7 @@ TEST_P(Scales, ZoomedRastersHaveNoGaps) {
   auto smallest = mesh_of({-3 * u, -3 * u, 3 * u, -3 * u, 3 * u, 3 * u, -3 * u, 3 * u});
   const Grid grid{-9 * u, -3 * u, 5 * u, u, 4, 26};
   const auto cells = smallest.queries.rasterize(grid, values);
-  Points centres;
-  for (std::size_t j = 0; j < grid.rows; ++j)
-    for (std::size_t i = 0; i < grid.columns; ++i) {
-      centres.push_back(grid.x0 + (static_cast<double>(i) + 0.5) * grid.dx);
-      centres.push_back(grid.y0 + (static_cast<double>(j) + 0.5) * grid.dy);
-    }
-  const auto one_by_one = smallest.queries.interpolate(values, centres);
+  const auto one_by_one = smallest.queries.interpolate(values, centers(grid));
   for (std::size_t i = 0; i < cells.size(); ++i) EXPECT_EQ(std::isnan(cells[i]), std::isnan(one_by_one[i])) << i;
 }
 
@@ -265,13 +259,7 @@ TEST_P(Scales, RastersOfAllDoublesHaveNoGaps) {
     const Doubles values{0, 1, 2, 3};
     const Grid grid{-0.5 * most, -0.5 * most, most / 32, most / 16, 30, 14};
     const auto cells = all.queries.rasterize(grid, values);
-    Points centres;
-    for (std::size_t j = 0; j < grid.rows; ++j)
-      for (std::size_t i = 0; i < grid.columns; ++i) {
-        centres.push_back(grid.x0 + (static_cast<double>(i) + 0.5) * grid.dx);
-        centres.push_back(grid.y0 + (static_cast<double>(j) + 0.5) * grid.dy);
-      }
-    const auto one_by_one = all.queries.interpolate(values, centres);
+    const auto one_by_one = all.queries.interpolate(values, centers(grid));
     std::size_t inside = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!std::isnan(one_by_one[i])) ++inside;

@@ -105,8 +105,7 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
     CADT_ADD_TIME(counters, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
-  /* On GPUs the four sides often are edges of points that others are inserting: whatever they have tested or have yet
-   * to test, it is not this quadrilateral. */
+  /* On GPUs others insert points close by: they may have tested the four sides with what lay across before. */
   *all_sides = CADT_CONTIGUOUS ? (p != apex ? 1u : 0u) : 1u;
   /* Another thread flipped the expected apex away, and did not know that this edge had yet to be tested: it still has
    * to be. */

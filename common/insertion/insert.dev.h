@@ -70,7 +70,7 @@ CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
 }
 
 /* The vertex that represents `block` of `level`, by its place among the points. */
-CADT_FN cadt_u32 cadt_standing_vertex(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
+CADT_FN cadt_u32 cadt_representing_vertex(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
 #if CADT_CONTIGUOUS
   return cadt_representative(level, block, n);
 #else
@@ -89,8 +89,8 @@ CADT_FN cadt_u32 cadt_standing_vertex(cadt_u32 level, cadt_u32 block, cadt_u32 n
 CADT_FN cadt_u32 cadt_start_beside(const cadt_locked_mesh* m, cadt_u32 level, cadt_u32 block, cadt_u32 n,
                                    cadt_point p) {
   const cadt_u32 beside = cadt_right_half(level, block) ? block - 1u : block + 1u;
-  const cadt_u32 v = cadt_standing_vertex(level, block, n);
-  const cadt_u32 w = beside < cadt_blocks_of(level, n) ? cadt_standing_vertex(level, beside, n) : v;
+  const cadt_u32 v = cadt_representing_vertex(level, block, n);
+  const cadt_u32 w = beside < cadt_blocks_of(level, n) ? cadt_representing_vertex(level, beside, n) : v;
   const cadt_u32 at_v = cadt_load_relaxed(m->vertex_to_triangle + v),
                  at_w = cadt_load_relaxed(m->vertex_to_triangle + w);
   const cadt_point a = cadt_point_of(m, v), b = cadt_point_of(m, w);

@@ -63,8 +63,9 @@ BuildStrategy choose_strategy(const DeviceTraits& device, const Options& options
   if (!may_use_stars(device, options) || profile.wide) return how;
   const bool automatic = options.tuning.strategy == Strategy::automatic;
   if (automatic && are_for_insertion(profile)) return how;
-  how.most_residual_wrapped = most_wrapped_by(device);
-  how.most_wrapped = automatic ? most_wrapped_of(how.most_residual_wrapped, profile.shapes) : how.most_residual_wrapped;
+  const std::size_t most = most_wrapped_by(device);
+  how.most_residual_wrapped = device.contiguous ? most : std::size_t{CADT_WRAP_MOST};
+  how.most_wrapped = automatic ? most_wrapped_of(most, profile.shapes) : most;
   how.cautious = automatic;
   how.least_points_of_tile = automatic ? least_points_of_tile : 0;
   const bool few = profile.distinct <= how.most_wrapped;

@@ -45,9 +45,17 @@ Hash128 DevicePart::hash() const {
   Statistics statistics;
   Context ctx(*data_->state->device, data_->state->memory, data_->state->options, statistics);
   const LaunchGrid parts = ctx.launcher.parts(count);
-  const Allocation rows = ctx.memory.allocate(parts.items * sizeof(cadt_hash));
+  Allocation rows = ctx.memory.allocate(parts.items * sizeof(cadt_hash));
   ctx.launcher.run<KernelId::cadt_hash_triangles>(data_->triangles, data_->ids, parts, parts.items, rows);
-  for (const cadt_hash& row : ctx.device.read_values<cadt_hash>(*rows, parts.items)) {
+  constexpr std::uint32_t most_read = 1024;
+  const std::uint32_t each = (parts.items - 1) / most_read + 1;
+  const LaunchGrid few{(parts.items - 1) / each + 1, parts.items, each};
+  if (each > 1) {
+    Allocation merged = ctx.memory.allocate(few.items * sizeof(cadt_hash));
+    ctx.launcher.run<KernelId::cadt_merge_hashes>(rows, few, few.items, merged);
+    rows = std::move(merged);
+  }
+  for (const cadt_hash& row : ctx.device.read_values<cadt_hash>(*rows, few.items)) {
     sum.high += row.high;
     sum.low += row.low;
   }

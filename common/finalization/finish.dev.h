@@ -117,6 +117,18 @@ CADT_KERNEL(cadt_hash_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOB
   sums[cadt_item] = sum;
 }
 
+/* Sums of rows of cadt_hash_triangles: a row for each work-item. */
+CADT_KERNEL(cadt_merge_hashes, CADT_GLOBAL const cadt_hash* rows, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
+            CADT_GLOBAL cadt_hash* sums) {
+  cadt_hash sum = {0u, 0u};
+  if (cadt_item >= parts) return;
+  CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
+    sum.high += rows[i].high;
+    sum.low += rows[i].low;
+  }
+  sums[cadt_item] = sum;
+}
+
 /* ids[i] = first + i, in two words. */
 CADT_KERNEL(cadt_number_ids, CADT_GLOBAL cadt_u64* ids, cadt_u32 first_low, cadt_u32 first_high, cadt_u32 count,
             cadt_u32 grain) {

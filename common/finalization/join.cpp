@@ -158,12 +158,16 @@ class Settlement {
     // Where what the sides of each stretch tell and pass up is written.
     std::vector<Places> places(children_.stretches());
     Places end;
+    std::size_t met = 0;
     for (std::size_t s = 0; s < places.size(); ++s) {
       places[s] = end;
-      for (std::size_t i = children_.first_side(s); i < children_.end_side(s); ++i)
+      for (std::size_t i = children_.first_side(s); i < children_.end_side(s); ++i) {
         ++(is_told(matches[i]) ? end.messages : end.sides);
+        met += matches[i].kind == CADT_MATCHED_FINAL ? 1 : 0;
+      }
     }
     finished_.node.messages.resize(end.messages);
+    finished_.node.open.sides.reserve(end.sides + finished_.rows.size() - std::min(met, finished_.rows.size()));
     finished_.node.open.sides.resize(end.sides);
     const Sum sum = platform::reduce_each<Sum>(
         children_.stretches(), threads_for(node_, matches.size()),

@@ -169,6 +169,7 @@
   X(cadt_pack_final)     /* finish.dev.h */                                         \
   X(cadt_pack_rows)      /* finish.dev.h */                                         \
   X(cadt_hash_triangles) /* finish.dev.h */                                         \
+  X(cadt_merge_hashes)   /* finish.dev.h */                                         \
   X(cadt_number_ids)     /* finish.dev.h: ids of 64 bits */                         \
   X(cadt_check_ids)      /* finish.dev.h */                                         \
   X(cadt_gather_ids)     /* finish.dev.h */                                         \

@@ -112,7 +112,7 @@ enum {
   CADT_WRAP_PART = 4,    /* points that a lane adds to a leaf node at a time */
   CADT_WRAP_PARTS = CADT_AABB_LEAF / CADT_WRAP_PART,
   CADT_WRAP_NEAR = 3,         /* leaf nodes that are searched for a first neighbour */
-  CADT_WRAP_NODES = 32,       /* inner nodes that are compared with a disc at a time, */
+  CADT_WRAP_NODES = 64,       /* inner nodes that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,       /* of these opened */
   CADT_WRAP_WIDE = 8,         /* with more leaf nodes, the floating-point filter chooses before exact tests */
   CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost included; more make a high-degree vertex */
@@ -122,17 +122,23 @@ enum {
   CADT_WRAP_LANES = 128,      /* lanes of a team that search */
   CADT_WRAP_HULL = 3000,      /* points that are wrapped even if nearly all are on the hull, */
   CADT_WRAP_HULL_EXACT = 400, /* and if all are on a circle, which takes exact tests */
+  CADT_WRAP_MANY = 32768,     /* points that are wrapped even if some of the hull take exact tests */
   CADT_WRAP_SHARES = 8,       /* work-items that write the triangles of a vertex */
-  CADT_WRAP_ROW = 24,         /* half-words of the known neighbours of a vertex: how many, and which */
+  CADT_WRAP_ROW = 24,         /* half-words of the known neighbours of a vertex, for fewer than so many */
   CADT_NEAR_PLACE = 127,      /* bits of a place among */
   CADT_NEAR_POINTS = 96,      /* the points known to be near a vertex (wrap_fast.dev.h), */
   CADT_NEAR_FEW = 8,          /* how many there should be, */
   CADT_NEAR_LEAVES = 128      /* and from how many leaf nodes at most */
 };
 
-/* Two counts in a word: real triangles, and ghost triangles. Arrays hold at most 2^15 wrapped points. */
-#define CADT_WRAP_REAL(sum) ((sum) >> 16)
-#define CADT_WRAP_GHOSTS(sum) ((sum)&0xFFFFu)
+/* Points of a wrapped mesh at most: 65,536. */
+#define CADT_WRAP_MOST (CADT_WRAP_NODES * CADT_AABB_FANOUT * CADT_AABB_LEAF)
+
+/* Two counts in a word: real triangles in the upper 17 bits, which CADT_WRAP_MOST points cannot exceed, and ghost
+ * triangles in the lower 15. With more hull edges they do not add up to 2n - 2: the mesh is not wrapped. */
+#define CADT_WRAP_ONE_REAL (1u << 15)
+#define CADT_WRAP_REAL(sum) ((sum) / CADT_WRAP_ONE_REAL)
+#define CADT_WRAP_GHOSTS(sum) ((sum) % CADT_WRAP_ONE_REAL)
 
 /* One set of a batch (batch.dev.h). Its points are multiplied by both factors, powers of two, then halved and counted
  * in cells. */

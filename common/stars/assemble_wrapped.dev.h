@@ -26,10 +26,9 @@ typedef struct {
   cadt_u32 apart;           /* the triangles without the ghost come before the others */
 } cadt_wrap_set;
 
-/* What a triangle of a vertex with its star vertices a and b adds to the packed count: triangles without the ghost in
- * the upper 16 bits, ghost triangles in the lower. */
+/* What a triangle of a vertex with its star vertices a and b adds to the packed count (layout.dev.h). */
 CADT_FN cadt_u32 cadt_wrap_packed_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
-  return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
+  return apart && a != CADT_GHOST && b != CADT_GHOST ? CADT_WRAP_ONE_REAL : 1u;
 }
 
 /* Whether v precedes another vertex of its star: then v owns what they share. */

@@ -35,10 +35,10 @@ struct WrappedSets {
 void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Allocation& list, std::size_t list_size,
                 const WrappedSets& sets, const WrappedStars& stars);
 
-/// The mesh of n points, at most 2^15, by gift wrapping (common/stars/wrap_exact.dev.h), without locks, points and
-/// input ids; certified unless it is a part, of a mesh of `all` points, or has high-degree vertices, with too many
-/// neighbours to be wrapped. Nothing if the points are collinear or the work limit is exceeded: then insertion takes
-/// over.
+/// The mesh of n points, at most CADT_WRAP_MOST, by gift wrapping (common/stars/wrap_exact.dev.h), without locks,
+/// points and input ids; certified unless it is a part, of a mesh of `all` points, or has high-degree vertices, with
+/// too many neighbours to be wrapped. Nothing if the points are collinear, the work limit is exceeded, or the hull has
+/// 2^15 edges: then insertion takes over.
 [[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const Allocation& points, std::size_t n, std::size_t all,
                                             MeshUse use);
 

@@ -107,9 +107,10 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
 
 /* The stars of the vertices in `todo`: `count` of them in a batch; or, with `arcs`, those that cadt_wrap_near has left
  * to do. Nothing is done if these are nearly all points and on the hull as far as is known: each would have to look at
- * all points. A vertex is skipped if more than CADT_MOST_HIGH_DEGREE have failed, or if the work exceeds the limit,
- * `work_limit` a point and `spare_work_limit` in addition; in a batch, if one vertex of its set has failed, which
- * states[set] counts, or the work work_done[set] exceeds it. */
+ * all points; nor if there are many points, and some of the hull take exact tests. A vertex is skipped if more than
+ * CADT_MOST_HIGH_DEGREE have failed, or if the work exceeds the limit, `work_limit` a point and `spare_work_limit` in
+ * addition; in a batch, if one vertex of its set has failed, which states[set] counts, or the work work_done[set]
+ * exceeds it. */
 CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
                  CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
@@ -122,9 +123,11 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
   const cadt_u32 hull = 2u * counts[CADT_WRAP_TODO_ON_CIRCLE] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT)
                                                                   : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
   /* from words that this kernel does not change, so the same for all lanes of a team */
-  const cadt_u32 mostly_hull = arcs && n > hull && 10u * counts[CADT_WRAP_TODO_OPEN] > 9u * n ? 1u : 0u;
-  const cadt_u32 stars = mostly_hull ? 0u : (arcs ? counts[CADT_WRAP_TODO] : count);
-  if (mostly_hull && cadt_item == 0u)
+  const cadt_u32 mostly_hull = n > hull && 10u * counts[CADT_WRAP_TODO_OPEN] > 9u * n ? 1u : 0u;
+  const cadt_u32 many_exact = n > CADT_CAST(cadt_u32, CADT_WRAP_MANY) && counts[CADT_WRAP_TODO_ON_CIRCLE] ? 1u : 0u;
+  const cadt_u32 refused = arcs && (mostly_hull || many_exact) ? 1u : 0u;
+  const cadt_u32 stars = refused ? 0u : (arcs ? counts[CADT_WRAP_TODO] : count);
+  if (refused && cadt_item == 0u)
     cadt_add_relaxed(counts + CADT_WRAP_FAILED, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);
   CADT_DECLARE_COUNTERS(counters);
   cadt_u32 exact_before = 0u;
@@ -136,8 +139,11 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     const cadt_aabb_tree in = cadt_aabb_tree_of(span, points, leaves, nodes);
     const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
     cadt_wrapper w = {&memory, in, &counters, lanes, v - span.begin, 0u};
-    const cadt_u32 known = arcs ? arcs[item * CADT_WRAP_ROW] : 0u;
-    CADT_TEAM_FOR(k, 1u + (known >> 1)) { memory.arc[k] = k ? arcs[item * CADT_WRAP_ROW + k] : known; }
+    const cadt_u32 head = arcs ? begins[v] : 0u;
+    if (cadt_team_lane == 0u) memory.arc[0] = head & CADT_WRAP_HEAD_SIZE;
+    CADT_TEAM_FOR(k, (head & CADT_WRAP_HEAD_SIZE) >> 1) {
+      memory.arc[1u + k] = arcs[item * CADT_WRAP_ROW + k] | (head & CADT_WRAP_HEAD_PROVEN(k) ? CADT_WRAP_PROVEN : 0u);
+    }
     if (cadt_team_lane == 0u)
       memory.place = cadt_load_relaxed(failed) <= (starts ? 0u : CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE)) &&
                              cadt_load_relaxed(done) <= work_limit * span.count + spare_work_limit

@@ -258,10 +258,17 @@ CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_
   return cadt_incircle_filter(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
 }
 
+/* The head of the partial star (wrapped_star.dev.h) with the first `noted` star vertices. */
+CADT_FN cadt_u32 cadt_near_head(const cadt_near* w, cadt_u32 noted) {
+  cadt_u32 head = noted << 1 | w->closed;
+  for (cadt_u32 k = 0u; k < noted; ++k)
+    if (k < cadt_near_triangles(w) && w->m->proven[k]) head |= CADT_WRAP_HEAD_PROVEN(k);
+  return head;
+}
+
 /* The stars of all n points. Those not found are listed in `todo` and counted (CADT_WRAP_TODO... of layout.dev.h);
- * their rows of `arcs` hold the partial star: the number of star vertices times two, plus 1 if they go all the way
- * round, then the star vertices, with CADT_WRAP_PROVEN if the triangle of one and the next is proven. \pre sizes are 0,
- * n >= 2 */
+ * their rows of `arcs` hold the star vertices of the partial star, and begins[v] its head. \pre sizes are 0,
+ * 2 <= n <= CADT_WRAP_MOST */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, cadt_u32 grain, cadt_u32 row,
                  CADT_GLOBAL cadt_u32* star_vertices, cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins,
@@ -289,11 +296,9 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     CADT_TEAM_FOR(k, w.size) {
       const cadt_u32 neighbor = cadt_near_neighbor(&w, k);
       memory.leaves[k] = neighbor;
-      if (!kind && noted)
-        arcs[memory.place * CADT_WRAP_ROW + 1u + k] =
-            CADT_CAST(cadt_u16, neighbor | (k < cadt_near_triangles(&w) && memory.proven[k] ? CADT_WRAP_PROVEN : 0u));
+      if (!kind && noted) arcs[memory.place * CADT_WRAP_ROW + k] = CADT_CAST(cadt_u16, neighbor);
     }
-    if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
+    if (cadt_team_lane == 0u && !kind) begins[v] = cadt_near_head(&w, noted);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.leaves, w.size, 1u, kind);
   }
   cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);

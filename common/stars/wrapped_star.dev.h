@@ -9,9 +9,13 @@
 
 #include "common/stars/aabb_tree.dev.h"
 
-/* In the row of a partial star (CADT_WRAP_ROW): the triangle of this star vertex and the next one is proven. The other
- * bits are the number of the star vertex, so rows serve at most 2^15 points. */
-#define CADT_WRAP_PROVEN 0x8000u
+/* The head of a partial star, which a vertex has until its star is found: twice the number of star vertices, less than
+ * CADT_WRAP_ROW, plus 1 if they go all the way round; and a bit if the triangle of star vertex k and the next one is
+ * proven. */
+#define CADT_WRAP_HEAD_SIZE 63u
+#define CADT_WRAP_HEAD_PROVEN(k) (64u << (k))
+/* In the memory of a team: the same bit, with the number of star vertex k. */
+#define CADT_WRAP_PROVEN 0x80000000u
 
 typedef struct {
   cadt_u32 n, row, star_words;

@@ -94,7 +94,9 @@ TEST_P(Finalization, FewVerticesStayOpen) {
   Triangulator triangulator(GetParam().options());
   TileOptions options;
   options.tile_points = 20000;
-  const TiledMesh mesh = triangulate_by_tiles(triangulator, uniform_points(150000, 4), options);
+  const Points xy = uniform_points(150000, 4);
+  const TiledMesh mesh = triangulate_by_tiles(triangulator, xy, options);
+  expect_equal(mesh, triangulator.triangulate(std::span<const double>(xy)));
   EXPECT_GE(mesh.open_of_root_n.size(), 8u);
   EXPECT_LT(*std::ranges::max_element(mesh.open_of_root_n), 7.0);
   EXPECT_GT(*std::ranges::min_element(mesh.open_of_root_n), 2.0);

@@ -246,6 +246,56 @@ TEST_P(Wrap, FinerKeysWhereTheyTellPointsApart) {
   EXPECT_EQ(apart.refined_points == 0, made_by_card(apart, GetParam().backend)) << apart.refined_points;
   EXPECT_GT(check(two_clusters(17000), Strategy::automatic).refined_points, 16000U);
 }
+
+/// Squares of 30 points each, far apart: those at their sides have wide circles, and no proven stars.
+Points squares_apart(std::size_t rows) {
+  Points xy = uniform_points(30 * rows * rows, 3);
+  for (std::size_t i = 0; i < xy.size(); ++i) {
+    const std::size_t square = i / 60;
+    xy[i] = static_cast<double>(i % 2 == 0 ? square % rows : square / rows) + 0.1 * xy[i];
+  }
+  return shuffled(xy, 3);
+}
+
+/// n points on an ellipse and five times as many within, at similar distances. Half of those behind the ellipse have no
+/// proven stars either.
+Points layers_of_an_ellipse(std::size_t n) {
+  Points xy;
+  const Points noise = uniform_points(6 * n, 3);
+  const double step = 6.283185307179586 / static_cast<double>(n);
+  for (std::size_t i = 0; i < 6 * n; ++i) {
+    const std::size_t layer = i / n;
+    const double shift = layer == 0 ? 0 : 0.3, turn = static_cast<double>(i % n) + 0.5 * static_cast<double>(layer % 2);
+    const double angle = step * (turn + shift * noise[2 * i]);
+    const double radius = 1 - step * (static_cast<double>(layer) + shift * noise[2 * i + 1]);
+    xy.insert(xy.end(), {radius * std::cos(angle), 0.8 * radius * std::sin(angle)});
+  }
+  return shuffled(xy, 3);
+}
+
+// More than a mesh that is wrapped as a whole has.
+TEST_P(Wrap, ManyResidualVertices) {
+  const Statistics s = check(squares_apart(60), Strategy::automatic);
+  if (!made_by_card(s, GetParam().backend)) return;
+  EXPECT_EQ(s.wrapped_stars + s.proven_stars, s.distinct);
+  EXPECT_GT(s.wrapped_stars, 32768U);
+}
+// Nor are so many wrapped if the hull takes exact tests.
+TEST_P(Wrap, ManyResidualVerticesFarAway) {
+  const Statistics s = check(skewed_points(150000), Strategy::automatic);
+  if (!made_by_card(s, GetParam().backend)) return;
+  EXPECT_GT(s.distinct - s.proven_stars, 32768U);
+  EXPECT_EQ(s.wrapped_stars, 0U);
+}
+// 15 bits count the edges of the hull.
+TEST_P(Wrap, HullsOfManyEdges) {
+  for (const std::size_t hull : {32000, 33200}) {
+    const Statistics s = check(layers_of_an_ellipse(hull), Strategy::automatic);
+    if (!made_by_card(s, GetParam().backend)) continue;
+    EXPECT_GT(s.proven_stars, 4 * hull);
+    EXPECT_EQ(s.wrapped_stars, hull == 32000 ? s.distinct - s.proven_stars : 0U);
+  }
+}
 CADT_ON_EVERY_BACKEND(Wrap);
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(ChooseStrategy, IsATable) {
     EXPECT_EQ(how.cautious, row.cautious) << row.name;
     // Residual vertices are like none of the shapes; tiles may be small where nothing else was asked for.
     const bool stars = row.most_wrapped != 0;
-    EXPECT_EQ(how.most_residual_wrapped, !stars ? 0U : row.device.contiguous ? 2048U : 32768U) << row.name;
+    EXPECT_EQ(how.most_residual_wrapped, !stars ? 0U : row.device.contiguous ? 2048U : 65536U) << row.name;
     EXPECT_EQ(how.least_points_of_tile, row.cautious ? 48U : 0U) << row.name;
   }
 }

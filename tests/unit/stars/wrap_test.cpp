@@ -12,6 +12,7 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #define CADT_WIDE 0
@@ -153,6 +154,28 @@ TEST(WrappedNear, HasTheStarsOfLattices) {
     EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
     EXPECT_LE(std::ranges::count(wrapped.sizes, 0U), wrapped.failed());
   }
+}
+
+// The largest set, whose numbers have 16 bits. By Euler's formula the stars have 6n - 6 - h words in all, those of h
+// hull vertices with the ghost.
+TEST(WrappedNear, HasTheStarsOfTheLargestSet) {
+  Points points = lattice(256, 0.3);
+  for (std::size_t i = 0; i < points.size(); ++i) {  // or the hull would take exact tests, and not be searched
+    points[i].x += 0.001 * std::sin(1.7 * static_cast<double>(i));
+    points[i].y += 0.001 * std::cos(2.3 * static_cast<double>(i));
+  }
+  ASSERT_EQ(points.size(), static_cast<std::size_t>(CADT_WRAP_MOST));
+  const Wrapped wrapped(points);
+  EXPECT_GE(wrapped.left, 100U) << "the hull";
+  EXPECT_EQ(wrapped.failed(), 0U);
+  std::size_t words = 0, hull = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const auto star = std::span(wrapped.star_vertices).subspan(wrapped.begins[v], wrapped.sizes[v]);
+    words += star.size();
+    hull += std::ranges::count(star, CADT_GHOST);
+    for (const std::uint32_t other : star) ASSERT_TRUE(other < points.size() || other == CADT_GHOST) << v;
+  }
+  EXPECT_EQ(words, 6 * points.size() - 6 - hull);
 }
 
 // Where all points are on the hull each would look at all others: nothing is searched, unless they are few.

@@ -1,34 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
+// Nothing here allocates: it is asked when there is no memory left.
 #pragma once
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
 namespace cadt::tiles {
 
-/// Bytes that the system can give to processes, its cache of files included. Allocates nothing: it is asked when there
-/// is no memory left.
-[[nodiscard]] inline std::optional<std::uint64_t> memory_of_system() noexcept {
-  const int file = ::open("/proc/meminfo", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return std::nullopt;
-  std::array<char, 1024> buffer{};
-  const ::ssize_t size = ::read(file, buffer.data(), buffer.size());
-  ::close(file);
-  constexpr std::string_view key = "MemAvailable:";  // among the first lines
-  const std::string_view text(buffer.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
-  std::size_t at = text.find(key);
-  if (at != text.npos) at = text.find_first_not_of(' ', at + key.size());
-  std::uint64_t kib = 0;
-  if (at == text.npos || std::from_chars(text.data() + at, text.data() + text.size(), kib).ec != std::errc())
-    return std::nullopt;
-  return kib << 10;
+/// The beginning of a text file.
+template <std::size_t Size>
+struct SystemFile {
+  std::array<char, Size> buffer{};
+  std::string_view text;  ///< empty if there is no such file
+
+  explicit SystemFile(const char* path) noexcept {
+    const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    std::size_t size = 0;
+    for (::ssize_t more = 1; more > 0 && size<Size; size += more> 0 ? static_cast<std::size_t>(more) : 0)
+      more = ::read(file, buffer.data() + size, Size - size);
+    ::close(file);
+    text = std::string_view(buffer.data(), size);
+  }
+  SystemFile(const SystemFile&) = delete;
+  SystemFile& operator=(const SystemFile&) = delete;
+
+  /// The number behind a key at the beginning of a line and blanks; of an empty key: that at the beginning.
+  [[nodiscard]] std::optional<std::uint64_t> number(std::string_view key = {}) const noexcept {
+    std::size_t at = 0;
+    while (at < text.size() && text.substr(at, key.size()) != key) {
+      const std::size_t end = text.find('\n', at);
+      at = end == text.npos ? text.size() : end + 1;
+    }
+    at = text.find_first_not_of(' ', std::min(at + key.size(), text.size()));
+    std::uint64_t value = 0;
+    if (at == text.npos || std::from_chars(text.data() + at, text.data() + text.size(), value).ec != std::errc())
+      return std::nullopt;
+    return value;
+  }
+};
+
+/// Names of the files of a memory controller of control groups, version 1 or 2.
+struct GroupFiles {
+  const char *folder, *limit, *used, *inactive_files, *active_files;
+};
+inline constexpr GroupFiles group_files_1 = {"/memory", "memory.limit_in_bytes", "memory.usage_in_bytes",
+                                             "total_inactive_file ", "total_active_file "};
+inline constexpr GroupFiles group_files_2 = {"", "memory.max", "memory.current", "inactive_file ", "active_file "};
+
+/// Bytes that the limit of a group and of those above it leave; what is cached of files counts as free. Nothing if
+/// there is no limit. `group`: its path, as in /proc/self/cgroup. A container sees its own group as the uppermost one,
+/// so groups that are not there are passed over.
+inline std::optional<std::uint64_t> memory_of_group(const char* root, std::string_view group,
+                                                    const GroupFiles& names) noexcept {
+  std::optional<std::uint64_t> least;
+  std::array<char, 4096> path{};
+  const auto file = [&](const char* name) noexcept {
+    const int size = std::snprintf(path.data(), path.size(), "%s%s%.*s/%s", root, names.folder,
+                                   static_cast<int>(group.size()), group.data(), name);
+    return size > 0 && static_cast<std::size_t>(size) < path.size() ? path.data() : "";
+  };
+  for (;;) {
+    while (!group.empty() && group.back() == '/') group.remove_suffix(1);
+    const auto limit = SystemFile<64>(file(names.limit)).number(), used = SystemFile<64>(file(names.used)).number();
+    if (limit && used) {
+      const SystemFile<4096> statistics(file("memory.stat"));
+      const std::uint64_t cached =
+          statistics.number(names.inactive_files).value_or(0) + statistics.number(names.active_files).value_or(0);
+      const std::uint64_t held = *used - std::min(*used, cached), left = *limit - std::min(*limit, held);
+      least = std::min(least.value_or(left), left);
+    }
+    if (group.empty()) return least;
+    group = group.substr(0, group.rfind('/') == group.npos ? 0 : group.rfind('/'));
+  }
+}
+
+/// Bytes that the control groups of this process leave (Slurm, containers, systemd); nothing if they have no limit.
+inline std::optional<std::uint64_t> memory_of_groups(const char* of_process, const char* root) noexcept {
+  std::optional<std::uint64_t> least;
+  const SystemFile<4096> groups(of_process);
+  for (std::string_view rest = groups.text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, end);  // number:controllers:path
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
+    if (second == line.npos) continue;
+    const std::string_view controllers = line.substr(first + 1, second - first - 1);
+    if (!controllers.empty() && controllers != "memory") continue;
+    const auto left =
+        memory_of_group(root, line.substr(second + 1), controllers.empty() ? group_files_2 : group_files_1);
+    if (left) least = std::min(least.value_or(*left), *left);
+  }
+  return least;
+}
+
+/// Bytes that the system can give to this process, its cache of files included. The paths are for tests.
+[[nodiscard]] inline std::optional<std::uint64_t> memory_of_system(const char* groups_of_process = "/proc/self/cgroup",
+                                                                   const char* groups = "/sys/fs/cgroup") noexcept {
+  const auto kib = SystemFile<1024>("/proc/meminfo").number("MemAvailable:");  // among the first lines
+  const std::optional<std::uint64_t> of_groups = memory_of_groups(groups_of_process, groups);
+  if (!kib) return of_groups;
+  return std::min(*kib << 10, of_groups.value_or(~std::uint64_t{0}));
 }
 
 }  // namespace cadt::tiles

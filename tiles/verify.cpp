@@ -328,6 +328,7 @@ Check check_manifest(const MeshDirectory& mesh, const Verification& found, const
   compare("distinct points", whole.distinct, found.distinct());
   compare("triangles", whole.triangles, found.triangles());
   compare("hull edges", whole.hull_edges, report.hull_vertices);
+  compare("open vertices of the whole mesh", mesh.manifest().nodes.back().open, 0);
   for (std::uint32_t i = 0; i < mesh.tree().size(); ++i) {
     const NodeArrays node = mesh.node(i);
     compare("triangles in a node", mesh.manifest().nodes[i].triangles, node.number_of_triangles());
@@ -335,6 +336,10 @@ Check check_manifest(const MeshDirectory& mesh, const Verification& found, const
     compare("triangles before a node", mesh.manifest().base[i], base);
     compare("links of a node", mesh.manifest().nodes[i].links, node.links.size());
     compare("duplicates in a node", mesh.manifest().nodes[i].duplicates, node.duplicates.size());
+    if (const TreeNode& at = mesh.tree().node(i); !at.is_leaf()) {  // its points are what is open in its children
+      const std::vector<NodeRecord>& nodes = mesh.manifest().nodes;
+      compare("open vertices below a join", nodes[at.left].open + nodes[at.right].open, node.number_of_points());
+    }
     base += node.number_of_triangles();
     // Those of all nodes are what it says of the mesh (read_manifest).
     if (sound && what.empty() &&

@@ -37,8 +37,9 @@ class TilesDirectoryTest(CliTest):
         node = right["nodes"][0]
         self.assertTrue(node["links"] > 0 and node["open"] > 0)
         claims(lambda m: m["nodes"][1].update(base=1), "triangles before a node")
-        for key in ("points", "triangles", "links", "duplicates"):
+        for key in ("points", "triangles", "links", "duplicates", "open"):
             claims(lambda m, key=key: m["nodes"][0].update({key: node[key] + 1}), key)
+        claims(lambda m: m["nodes"][-1].update(open=1), "open vertices of the whole mesh")
 
         def swap_hashes(m):
             first, second = (m["nodes"][i]["sums"] for i in (0, 1))

@@ -45,7 +45,8 @@ TEST_F(GroupMemory, IsWhatTheLowestLimitLeaves) {
 
 TEST_F(GroupMemory, OfAContainerIsTheUppermost) {
   group_2("", "5000", 1000, "");
-  for (const char* groups : {"0::/\n", "0::/docker/0123abcd\n", "0::/../..\n"}) EXPECT_EQ(left(groups), 4000U) << groups;
+  for (const char* groups : {"0::/\n", "0::/docker/0123abcd\n", "0::/../..\n"})
+    EXPECT_EQ(left(groups), 4000U) << groups;
 }
 
 TEST_F(GroupMemory, HasOtherFilesInVersion1) {
@@ -59,7 +60,8 @@ TEST_F(GroupMemory, HasOtherFilesInVersion1) {
 
 TEST_F(GroupMemory, IsUnknownWithoutLimits) {
   group_2("/job", "max", 7, "inactive_file 1\n");
-  for (const char* groups : {"0::/job\n", "0::/none\n", "", "\n", "0:/job\n", "0::"}) EXPECT_EQ(left(groups), std::nullopt);
+  for (const char* groups : {"0::/job\n", "0::/none\n", "", "\n", "0:/job\n", "0::"})
+    EXPECT_EQ(left(groups), std::nullopt);
   group_2("/job", "", 7, "");
   EXPECT_EQ(left("0::/job\n"), std::nullopt);
   EXPECT_EQ(memory_of_groups((process_ + "-none").c_str(), root_.c_str()), std::nullopt);

@@ -49,17 +49,18 @@ struct SystemFile {
   }
 };
 
-/// Names of the files of a memory controller of control groups, version 1 or 2.
+/// Names of the files of a memory controller of control groups, version 1 or 2. A group above its `high` is throttled.
 struct GroupFiles {
-  const char *folder, *limit, *used, *inactive_files, *active_files;
+  const char *folder, *limit, *high, *used, *inactive_files, *active_files;
 };
-inline constexpr GroupFiles group_files_1 = {"/memory", "memory.limit_in_bytes", "memory.usage_in_bytes",
-                                             "total_inactive_file ", "total_active_file "};
-inline constexpr GroupFiles group_files_2 = {"", "memory.max", "memory.current", "inactive_file ", "active_file "};
+inline constexpr GroupFiles group_files_1 = {
+    "/memory", "memory.limit_in_bytes", "", "memory.usage_in_bytes", "total_inactive_file ", "total_active_file "};
+inline constexpr GroupFiles group_files_2 = {
+    "", "memory.max", "memory.high", "memory.current", "inactive_file ", "active_file "};
 
 /// Bytes that the limit of a group and of those above it leave; what is cached of files counts as free. Nothing if
-/// there is no limit. `group`: its path, as in /proc/self/cgroup. A container sees its own group as the uppermost one,
-/// so groups that are not there are passed over.
+/// there is no limit, else at least 1. `group`: its path, as in /proc/self/cgroup. A container sees its own group as
+/// the uppermost one, so groups that are not there are passed over.
 inline std::optional<std::uint64_t> memory_of_group(const char* root, std::string_view group,
                                                     const GroupFiles& names) noexcept {
   std::optional<std::uint64_t> least;
@@ -71,12 +72,15 @@ inline std::optional<std::uint64_t> memory_of_group(const char* root, std::strin
   };
   for (;;) {
     while (!group.empty() && group.back() == '/') group.remove_suffix(1);
-    const auto limit = SystemFile<64>(file(names.limit)).number(), used = SystemFile<64>(file(names.used)).number();
-    if (limit && used) {
+    constexpr std::uint64_t none = ~std::uint64_t{0};
+    const std::uint64_t limit = std::min(SystemFile<64>(file(names.limit)).number().value_or(none),
+                                         SystemFile<64>(file(names.high)).number().value_or(none));
+    const auto used = SystemFile<64>(file(names.used)).number();
+    if (limit != none && used) {
       const SystemFile<4096> statistics(file("memory.stat"));
       const std::uint64_t cached =
           statistics.number(names.inactive_files).value_or(0) + statistics.number(names.active_files).value_or(0);
-      const std::uint64_t held = *used - std::min(*used, cached), left = *limit - std::min(*limit, held);
+      const std::uint64_t held = *used - std::min(*used, cached), left = limit > held ? limit - held : 1;
       least = std::min(least.value_or(left), left);
     }
     if (group.empty()) return least;
@@ -87,17 +91,20 @@ inline std::optional<std::uint64_t> memory_of_group(const char* root, std::strin
 /// Bytes that the control groups of this process leave (Slurm, containers, systemd); nothing if they have no limit.
 inline std::optional<std::uint64_t> memory_of_groups(const char* of_process, const char* root) noexcept {
   std::optional<std::uint64_t> least;
-  const SystemFile<4096> groups(of_process);
+  const SystemFile<16384> groups(of_process);
   for (std::string_view rest = groups.text; !rest.empty();) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = rest.substr(0, end);  // number:controllers:path
     rest.remove_prefix(std::min(end + 1, rest.size()));
     const std::size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
     if (second == line.npos) continue;
-    const std::string_view controllers = line.substr(first + 1, second - first - 1);
-    if (!controllers.empty() && controllers != "memory") continue;
-    const auto left =
-        memory_of_group(root, line.substr(second + 1), controllers.empty() ? group_files_2 : group_files_1);
+    const std::string_view controllers = line.substr(first, second - first);  // ":" in version 2, ":cpu,memory" in 1
+    const bool version_2 = controllers.size() == 1;
+    const std::size_t at = controllers.find("memory"), behind = at == line.npos ? at : at + 6;
+    const bool has_memory = at != line.npos && (controllers[at - 1] == ':' || controllers[at - 1] == ',') &&
+                            (behind == controllers.size() || controllers[behind] == ',');
+    if (!version_2 && !has_memory) continue;
+    const auto left = memory_of_group(root, line.substr(second + 1), version_2 ? group_files_2 : group_files_1);
     if (left) least = std::min(least.value_or(*left), *left);
   }
   return least;

@@ -92,7 +92,8 @@ class Wrapping {
     if (high_degree_ != 0) return add_high_degree(mesh, words[0]);
     mesh.triangles = CADT_WRAP_REAL(words[0]);
     const std::size_t found = mesh.triangles + CADT_WRAP_GHOSTS(words[0]);
-    if (found + CADT_WRAP_ONE_REAL - 1 == triangles()) return false;  // so many ghosts are counted as a real triangle
+    // CADT_WRAP_ONE_REAL ghosts are counted as one real triangle.
+    if (found < triangles() && (triangles() - found) % (CADT_WRAP_ONE_REAL - 1) == 0) return false;
     require_all(found);
     ctx_.statistics.wrapped_stars = n_;
     if (!certifies) return true;

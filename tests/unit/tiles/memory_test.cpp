@@ -40,7 +40,14 @@ TEST_F(GroupMemory, IsWhatTheLowestLimitLeaves) {
   EXPECT_EQ(left("0::/job/step/task_0\n"), 200003U) << "a group that is not there";
   EXPECT_EQ(left("0::/job\n"), 450000U);
   group_2("/job/step", "800000", 900000, "inactive_file 50000\n");
-  EXPECT_EQ(left("0::/job/step"), 0U);
+  EXPECT_EQ(left("0::/job/step"), 1U) << "0 would be unknown";
+  group_2("/job/step", "0", 900000, "");
+  EXPECT_EQ(left("0::/job/step"), 1U);
+  group_2("/job/step", "800000", 900000, "inactive_file 900000\n");
+  write(root_ + "/job/step/memory.high", "300000\n");
+  EXPECT_EQ(left("0::/job/step"), 300000U) << "above, it would be throttled";
+  write(root_ + "/job/step/memory.high", "max\n");
+  EXPECT_EQ(left("0::/job/step"), 450000U);
 }
 
 TEST_F(GroupMemory, OfAContainerIsTheUppermost) {
@@ -55,7 +62,12 @@ TEST_F(GroupMemory, HasOtherFilesInVersion1) {
   write(root_ + "/memory/slurm/job_7/memory.stat",
         "inactive_file 1\nactive_file 1\ntotal_inactive_file 500\ntotal_active_file 30\n");
   EXPECT_EQ(left("12:cpu,cpuacct:/other\n9:memory:/slurm/job_7\n0::/slurm\n"), 1530U);
-  EXPECT_EQ(left("9:memory_of_another:/slurm/job_7\n"), std::nullopt);
+  for (const char* controllers : {"memory", "memory,cpu", "hugetlb,memory", "cpu,memory,pids"})
+    EXPECT_EQ(left("9:" + std::string(controllers) + ":/slurm/job_7\n"), 1530U) << controllers;
+  for (const char* controllers : {"memory_of_another", "name=memory", "cpu"})
+    EXPECT_EQ(left("9:" + std::string(controllers) + ":/slurm/job_7\n"), std::nullopt) << controllers;
+  const std::string others = "1:name=" + std::string(9000, 'x') + ":/\n";
+  EXPECT_EQ(left(others + "9:memory:/slurm/job_7\n"), 1530U);
 }
 
 TEST_F(GroupMemory, IsUnknownWithoutLimits) {

@@ -26,8 +26,11 @@ struct SystemFile {
     const int file = ::open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     std::size_t size = 0;
-    for (::ssize_t more = 1; more > 0 && size<Size; size += more> 0 ? static_cast<std::size_t>(more) : 0)
-      more = ::read(file, buffer.data() + size, Size - size);
+    for (;;) {
+      const ::ssize_t more = size == Size ? 0 : ::read(file, buffer.data() + size, Size - size);
+      if (more <= 0) break;
+      size += static_cast<std::size_t>(more);
+    }
     ::close(file);
     text = std::string_view(buffer.data(), size);
   }

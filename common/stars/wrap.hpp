@@ -38,7 +38,7 @@ void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const All
 /// The mesh of n points, at most CADT_WRAP_MOST, by gift wrapping (common/stars/wrap_exact.dev.h), without locks,
 /// points and input ids; certified unless it is a part, of a mesh of `all` points, or has high-degree vertices, with
 /// too many neighbours to be wrapped. Nothing if the points are collinear, the work limit is exceeded, or the hull has
-/// 2^15 edges: then insertion takes over.
+/// 2^15 edges or more: then insertion takes over.
 [[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const Allocation& points, std::size_t n, std::size_t all,
                                             MeshUse use);
 

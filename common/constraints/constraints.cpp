@@ -77,6 +77,7 @@ class Constrainer {
     std::size_t untried = 0;     // pairs, the first ones, that no launch has taken
     std::size_t fresh_size = 0;  // how many of them a launch takes
     bool fresh = true;           // whether it took some
+    bool tries_few = !ctx_.device.shape().contiguous;
     const Allocation* pairs = &ends_;
     Allocation left;
     for (int launch = 0; count != 0; ++launch) {
@@ -96,13 +97,17 @@ class Constrainer {
       const std::size_t tried = launch == 0 ? pieces.count : taken;
       if (tried == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
+      ctx_.statistics.segment_retries += waiting;
+      if (launch == 0) most = count;
+      if (tries_few && count > 1 && count <= CADT_FEW_PIECES) {
+        tries_few = false;  // what is left then is long
+        if (!insert_few(left, count)) return Outcome::crossed;
+      }
       const std::size_t next = next_tries(tried, waiting, launch == 0);
       if (fresh) fresh_size = next;
       fresh = launch == 0 || count == untried || !ctx_.device.shape().contiguous;
       taken = fresh ? std::min(count, fresh_size) : std::min({count - untried, next, waiting != 0 ? waiting : next});
       if (fresh) untried = count - taken;
-      ctx_.statistics.segment_retries += waiting;
-      if (launch == 0) most = count;
       ctx_.check("constrain", 1 - static_cast<double>(count) / static_cast<double>(std::max(most, count) + 1));
     }
     return Outcome::done;
@@ -280,6 +285,29 @@ class Constrainer {
     require_sound(found[CADT_SEGMENTS_BROKEN]);
     ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
     return found[CADT_SEGMENTS_LEFT];
+  }
+
+  /// Few pieces, as far as they are short; `count` of the pairs are left. False if one crosses a constrained edge.
+  [[nodiscard]] bool insert_few(const Allocation& pairs, std::size_t& count) {
+    Pieces pieces;
+    Rings rings;
+    pieces.room = count;
+    rings.room = count * std::size_t{CADT_FEW_PLACES};
+    make(count, {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper, &pieces.strides});
+    make(2 * count, {&pieces.ends});
+    make(rings.room, {&rings.vertex, &rings.triangle, &rings.edge, &rings.outer, &rings.piece});
+    Allocation others, wins, bases;
+    make(2 * count, {&others});
+    make(count, {&wins, &bases});
+    if (!claims_) free_claims();
+    launch_.run_in_groups<KernelId::cadt_insert_few_pieces>(CADT_FEW_LANES, CADT_FEW_LANES, segment_mesh(), pieces,
+                                                            rings, count, pairs, others, claims_, wins, bases, words_);
+    const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+    ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+    require_sound(found[CADT_SEGMENTS_BROKEN]);
+    ctx_.statistics.segment_retries += found[CADT_SEGMENTS_RETRIES];
+    count = found[CADT_SEGMENTS_LEFT];
+    return found[CADT_SEGMENTS_CROSSED] == 0;
   }
 
   /// Walks along long pieces; those with a vertex on them go to `left`.

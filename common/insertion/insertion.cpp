@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -44,8 +45,9 @@ static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
 class IncrementalInsertion {
  public:
   /// `points` are those of `own` where it is given, which run() needs.
-  IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
-      : ctx_(ctx), own_(own), order_(points) {}
+  IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr,
+                       std::optional<BaseMesh> base = std::nullopt)
+      : ctx_(ctx), own_(own), order_(points), base_(std::move(base)) {}
 
   [[nodiscard]] Mesh run(MeshUse use) {
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
@@ -58,7 +60,8 @@ class IncrementalInsertion {
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
     if (use != MeshUse::constrained) own_->points.release();
-    Mesh mesh = drop_locks(ctx_, std::move(locked), 2 * mesh_.third, std::move(own_->input_ids), use);
+    const std::uint32_t unused = base_ ? static_cast<std::uint32_t>(2 * first_points() - 2) : 2 * mesh_.third;
+    Mesh mesh = drop_locks(ctx_, std::move(locked), unused, std::move(own_->input_ids), use);
     mesh.points = std::move(own_->points);
     return mesh;
   }
@@ -90,6 +93,9 @@ class IncrementalInsertion {
     return {std::move(mesh_.locked), std::move(mesh_.edge_flags), 2 * n_};
   }
 
+  /// Points among which the centre lies: those of the base mesh, or all.
+  [[nodiscard]] std::size_t first_points() const noexcept { return base_ ? blocks_of_level(n_, base_->level) : n_; }
+
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
@@ -110,11 +116,12 @@ class IncrementalInsertion {
       launch_.run<KernelId::cadt_first_representative>(1, n_, levels(), found);
       mesh_.first = launch_.read_word(found, 0);
     }
-    mesh_.second = static_cast<std::uint32_t>(n_ / 2);
+    const std::size_t n = first_points();
+    mesh_.second = static_cast<std::uint32_t>(n / 2);
     if (mesh_.second == mesh_.first) mesh_.second = 0;
     ctx_.device.fill(*found, 0, word, CADT_NONE);
     constexpr std::size_t few = 1024;  // enough unless nearly all points are on a line
-    for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
+    for (std::size_t begin = 0, end = std::min(n, few); begin < n; begin = end, end = n) {
       launch_.run<KernelId::cadt_find_seed_triangle>(order_.points, mesh_.first, mesh_.second, begin,
                                                      launch_.grid(end - begin), found);
       mesh_.third = launch_.read_word(found, 0);
@@ -155,11 +162,21 @@ class IncrementalInsertion {
     // points of a launch: a level and deferred ones, of one launch or of several since the last read
     const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
-    launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
+    if (base_)
+      lock_base();
+    else
+      launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
     const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
-    for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
+    for (unsigned level = base_ ? base_->level : levels(); level-- > last;) insert_level(level, level == last);
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) finish_deferred();
+  }
+
+  void lock_base() {
+    Mesh& base = base_->mesh;
+    launch_.run<KernelId::cadt_lock_base>(mesh_, base.vertices, base.across, n_, base_->level, launch_.grid(base.all));
+    base.vertices.release();
+    base.across.release();
   }
 
   void insert_level(unsigned level, bool last) {
@@ -318,6 +335,7 @@ class IncrementalInsertion {
   std::uint32_t edge_capacity_ = static_cast<std::uint32_t>(n_ / 8 + 4096);
   Counters counters_{ctx_, counted_lost_locks(ctx_.options, order_)};
   LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.tuning.stabilize)};
+  std::optional<BaseMesh> base_;
   Allocation deferred_counts_;
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
   Deferred deferred_;                                           // on the lists [1]
@@ -329,9 +347,9 @@ class IncrementalInsertion {
 
 std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
-Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use) {
+Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use, std::optional<BaseMesh> base) {
   points.keys.release();
-  return IncrementalInsertion(ctx, points, &points).run(use);
+  return IncrementalInsertion(ctx, points, &points, std::move(base)).run(use);
 }
 
 LockedTriangles sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {

@@ -57,9 +57,10 @@ KeyGrid choose_grid(const Bounds& bounds, int bits) {
   return grid;
 }
 
-KeyGrid grid_of_all(const Bounds& bounds, std::size_t n) {
+KeyGrid grid_of_all(const Bounds& bounds, std::size_t n, bool finest) {
   // About sixteen square cells a point keep runs of equal keys short on well-spread data.
-  KeyGrid grid = choose_grid(bounds, std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, most_key_bits));
+  const int suitable = std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, most_key_bits);
+  KeyGrid grid = choose_grid(bounds, finest ? most_key_bits : suitable);
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
   if (n >= least_points_of_tiles) grid.scale *= scale_for_tiles(grid, width, height, n);
   grid.most_x = width * grid.scale;

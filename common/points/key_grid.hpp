@@ -32,8 +32,8 @@ constexpr int most_key_bits = 32;  ///< of a one-word key
 /// A grid of at most 2^bits square cells over the bounds.
 [[nodiscard]] KeyGrid choose_grid(const Bounds& bounds, int bits);
 
-/// The grid of n points with these bounds.
-[[nodiscard]] KeyGrid grid_of_all(const Bounds& bounds, std::size_t n);
+/// The grid of n points with these bounds; with as many bits as a one-word key has, or as many as suit n points.
+[[nodiscard]] KeyGrid grid_of_all(const Bounds& bounds, std::size_t n, bool finest);
 
 /// Sort keys of n points on the device; one-word keys have no low words. \pre low || grid.fine_levels == 0
 void make_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low, std::size_t n,

@@ -10,7 +10,7 @@
 #include "common/portable/layout.dev.h"
 
 enum {
-  CADT_RUN = 16 /* longest run of equal keys that is sorted in place; longer ones are refined (key_refinement.dev.h) */
+  CADT_RUN = 32 /* longest run of equal keys that is sorted in place; longer ones are refined (key_refinement.dev.h) */
 };
 
 CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt_u32 j) {

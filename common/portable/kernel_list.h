@@ -48,6 +48,8 @@
 #define CADT_INSERTION_KERNELS(X)                                                    \
   X(cadt_find_seed_triangle)   /* seed_triangle.dev.h: three points not on a line */ \
   X(cadt_seed_mesh)            /* seed_triangle.dev.h */                             \
+  X(cadt_pick_base)            /* base_mesh.dev.h: points that are wrapped first */  \
+  X(cadt_lock_base)            /* base_mesh.dev.h: their mesh gets locks */          \
   X(cadt_first_representative) /* insert.dev.h */                                    \
   X(cadt_by_level)             /* insert.dev.h: order of insertion on GPUs */        \
   X(cadt_insert)               /* insert.dev.h: locate, split, legalise */           \
@@ -203,6 +205,7 @@
   X(cadt_fill_chains)            /* segment_cavity.dev.h */                                        \
   X(cadt_link_cavities)          /* segment_cavity.dev.h */                                        \
   X(cadt_release_cavities)       /* segment_cavity.dev.h */                                        \
+  X(cadt_insert_few_pieces)      /* few_pieces.dev.h: all of these steps, for few short pieces */  \
   X(cadt_domain_unite)           /* domains.dev.h: triangles that no constrained edge separates */ \
   X(cadt_domain_roots)           /* domains.dev.h */                                               \
   X(cadt_domain_regions)         /* domains.dev.h */                                               \

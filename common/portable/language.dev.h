@@ -92,6 +92,7 @@ typedef long cadt_i64;
 #define cadt_item_of_group ((cadt_u32)get_local_id(0))
 #define cadt_group_items ((cadt_u32)get_local_size(0))
 #define cadt_group_barrier() barrier(CLK_LOCAL_MEM_FENCE)
+#define cadt_group_barrier_all() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 
 #define cadt_prefetch_to_write(p) ((void)(p))
 #define cadt_prefetch_to_read(p) ((void)(p))
@@ -155,6 +156,7 @@ typedef long long cadt_i64;
 #define cadt_item_of_group ((cadt_u32)threadIdx.x)
 #define cadt_group_items ((cadt_u32)blockDim.x)
 #define cadt_group_barrier() __syncthreads()
+#define cadt_group_barrier_all() __syncthreads()
 
 #define cadt_prefetch_to_write(p) ((void)(p))
 #define cadt_prefetch_to_read(p) ((void)(p))

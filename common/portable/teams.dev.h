@@ -15,13 +15,15 @@
 #endif
 
 /* A team works on one item with memory of its own: on GPUs a group, elsewhere a single work-item. Lanes share the
- * elements of CADT_TEAM_FOR; after CADT_TEAM_SYNC, which all lanes must reach, they see what the others wrote. */
+ * elements of CADT_TEAM_FOR; after CADT_TEAM_SYNC, which all lanes must reach, they see what the others wrote to the
+ * team's memory, after CADT_TEAM_SYNC_ALL also what they wrote to global memory. */
 #if CADT_GROUP_SUMS
 #define CADT_TEAM_MEMORY CADT_LOCAL
 #define CADT_TEAM_PTR CADT_LOCAL_PTR
 #define cadt_team_lane cadt_item_of_group
 #define cadt_team_lanes cadt_group_items
 #define CADT_TEAM_SYNC() cadt_group_barrier()
+#define CADT_TEAM_SYNC_ALL() cadt_group_barrier_all()
 #define CADT_FOR_TEAMS(t, count, grain) \
   for (cadt_u32 t = cadt_item / cadt_group_items; t < (count); t += cadt_items / cadt_group_items)
 #else
@@ -30,6 +32,7 @@
 #define cadt_team_lane 0u
 #define cadt_team_lanes 1u
 #define CADT_TEAM_SYNC() ((void)0)
+#define CADT_TEAM_SYNC_ALL() ((void)0)
 #define CADT_FOR_TEAMS(t, count, grain) CADT_FOR(t, count, grain)
 #endif
 #define CADT_TEAM_FOR(i, count) for (cadt_u32 i = cadt_team_lane; i < (count); i += cadt_team_lanes)

@@ -9,13 +9,14 @@
 #include "common/portable/atomics.dev.h"
 
 CADT_FN cadt_u32 cadt_find_root(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
-  for (;;) {
-    const cadt_u32 up = cadt_load_relaxed(roots + r);
-    if (up == r) return r;
+  cadt_u32 up = cadt_load_relaxed(roots + r);
+  while (up != r) {
     const cadt_u32 further = cadt_load_relaxed(roots + up);
-    if (further != up) cadt_store_relaxed(roots + r, further); /* path halving: shorter for later searches */
+    if (further != up) cadt_store_relaxed(roots + r, further); /* path splitting: shorter for later searches */
     r = up;
+    up = further;
   }
+  return r;
 }
 
 /* Whether this call joined two trees: then `r` and `other` are an edge of a spanning forest. */

@@ -28,9 +28,10 @@ std::optional<TileList> make_tiles(Context& ctx, const SortKeys& keys, std::size
   const LaunchGrid all = launch.grid(n);
   TileList list;
   Allocation ranks, before, overfull;  // before: the ranks of tiles some of which are divided again
-  const auto flag = [&](const Allocation& descents) {
+  const Allocation found = launch.zeros(2);
+  const auto flag = [&] {
     ranks = ctx.memory.transient((n + 1) * word);
-    launch.run<KernelId::cadt_tile_flags>(all.items, keys, before, overfull, ranks, n, levels, all.grain, descents);
+    launch.run<KernelId::cadt_tile_flags>(all.items, keys, before, overfull, ranks, n, levels, all.grain, found);
   };
   const auto pack = [&] {
     launch.scan(ranks, n + 1);
@@ -38,19 +39,17 @@ std::optional<TileList> make_tiles(Context& ctx, const SortKeys& keys, std::size
     list.tiles = ctx.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
     launch.run<KernelId::cadt_tile_pack>(all.items, keys, before, overfull, ranks, list.tiles, n, levels, all.grain);
   };
-  const Allocation found = launch.zeros(1);
-  flag(found);
-  if (launch.read_word(found, 0) != 0) return std::nullopt;
+  flag();
+  const auto counted = ctx.device.read_values(*found, 2);
+  if (counted[0] != 0) return std::nullopt;
   pack();
   if (n / list.count < least) return std::nullopt;
-  if (keys.low_bits != 0) {  // keys of one word are kept only where hardly any cell is over-full
+  if (counted[1] != 0) {
     overfull = launch.zeros(list.count);
-    launch.run<KernelId::cadt_tile_overfull>(all.items, keys, ranks, list.tiles, n, levels, all.grain, overfull, found);
-    if (launch.read_word(found, 0) != 0) {
-      before = std::move(ranks);
-      flag(found);  // not read again: the keys are in order
-      pack();
-    }
+    launch.run<KernelId::cadt_tile_overfull>(all.items, keys, ranks, list.tiles, n, levels, all.grain, overfull);
+    before = std::move(ranks);
+    flag();
+    pack();
   }
   ctx.statistics.tiles += list.count;
   return list;

@@ -26,6 +26,25 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
+/// Most points of a base mesh. Above, insertion on cards is faster than gift wrapping of the residual vertices of
+/// coasts.
+constexpr std::size_t most_in_base = 16384;
+
+/// The mesh of some of the residual vertices, to insert the others into; nothing if they cannot be wrapped.
+std::optional<BaseMesh> wrap_base(Context& ctx, const SortedPoints& points, std::size_t all) {
+  const std::size_t n = points.distinct, most = std::min(most_in_base, n / 4);
+  BaseMesh base;
+  while (blocks_of_level(n, base.level) > most) ++base.level;
+  const std::size_t count = blocks_of_level(n, base.level);
+  const Allocation picked = ctx.memory.allocate(count * sizeof(cadt_point));
+  ctx.launcher.run<KernelId::cadt_pick_base>(points.points, n, base.level, ctx.launcher.grid(count), picked);
+  std::optional<Mesh> mesh = wrap_mesh(ctx, picked, count, all, MeshUse::part);
+  if (!mesh) return std::nullopt;
+  ctx.statistics.wrapped_stars = 0;  // insertion changes them
+  base.mesh = std::move(*mesh);
+  return base;
+}
+
 class StarStage {
  public:
   StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how, MeshUse use)
@@ -229,7 +248,10 @@ Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input
 Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, MeshUse use, std::size_t all) {
   const bool part = use == MeshUse::part;
   points.keys.release();
-  if (points.distinct <= (part ? how.most_residual_wrapped : how.most_wrapped)) {
+  std::optional<BaseMesh> base;
+  if (part && points.distinct > how.most_residual_wrapped && !ctx.device.shape().contiguous) {
+    base = wrap_base(ctx, points, all);
+  } else if (points.distinct <= (part ? how.most_residual_wrapped : how.most_wrapped)) {
     const std::size_t of = part ? all : points.distinct;
     if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points.points, points.distinct, of, part ? use : MeshUse::whole)) {
       if (!part) wrapped->points = std::move(points.points);
@@ -237,7 +259,7 @@ Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how,
       return std::move(*wrapped);
     }
   }
-  return insert_incrementally(ctx, std::move(points), use);
+  return insert_incrementally(ctx, std::move(points), use, std::move(base));
 }
 
 }  // namespace cadt

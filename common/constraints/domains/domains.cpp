@@ -106,8 +106,12 @@ std::vector<Link> read_links(Context& ctx, const DomainMesh& mesh, const Allocat
     launch.run<KernelId::cadt_identity>(roots, launch.grid(nodes));
   }
   const Allocation counter = launch.zeros(1), links = ctx.memory.allocate(room * sizeof(Link));
-  const LaunchGrid all = launch.grid(mesh.triangles);
-  launch.run<KernelId::cadt_domain_links>(mesh, all, region, roots, table, counter, links, room);
+  // Regions with very many edges between them, such as land and sea, are joined by a few of these first: all at once
+  // would want to change the same word.
+  constexpr std::size_t few = 64;
+  for (std::size_t step = tree ? few : 1; step != 0; step /= few)
+    launch.run<KernelId::cadt_domain_links>(mesh, mesh.triangles, step, launch.grid((mesh.triangles - 1) / step + 1),
+                                            region, roots, table, counter, links, room);
   const std::size_t count = launch.read_word(counter, 0);
   if (count > room || (tree && count != nodes - 1))
     give_up("the regions have ", count, " links instead of ", tree ? nodes - 1 : room);

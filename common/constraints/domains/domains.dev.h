@@ -123,19 +123,20 @@ CADT_KERNEL(cadt_domain_open, CADT_GLOBAL const cadt_u32* balance, cadt_u32 mask
 enum { CADT_LINK_WORDS = 3 };
 
 /* Lists links as far as there is `room`, in any order, and counts them: one for each constrained edge between two
- * regions, or, with `roots` (of the regions, each its own at first), those of a spanning tree alone. */
-CADT_KERNEL(cadt_domain_links, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL const cadt_u32* region, CADT_GLOBAL cadt_u32* roots, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* uppers, CADT_GLOBAL const cadt_u32* weights, CADT_GLOBAL cadt_u32* counter,
-            CADT_GLOBAL cadt_u32* links, cadt_u32 room) {
+ * regions, or, with `roots` (of the regions, each its own at first), those of a spanning tree alone. Of every `step`-th
+ * triangle, `count` in all. */
+CADT_KERNEL(cadt_domain_links, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 triangles, cadt_u32 step, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL const cadt_u32* region, CADT_GLOBAL cadt_u32* roots,
+            CADT_GLOBAL const cadt_u32* begins, CADT_GLOBAL const cadt_u32* uppers, CADT_GLOBAL const cadt_u32* weights,
+            CADT_GLOBAL cadt_u32* counter, CADT_GLOBAL cadt_u32* links, cadt_u32 room) {
   CADT_DOMAIN_MESH(mesh);
   const cadt_edge_weights all = {begins, uppers, weights};
-  CADT_FOR(t, count, grain) {
-    const cadt_u32 flags = mesh.edge_flags[t];
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 t = i * step, flags = mesh.edge_flags[t];
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 n = mesh.neighbors[3u * t + k];
       if (!(flags >> k & 1u) || (n != CADT_NONE && n > t)) continue;
-      const cadt_u32 left = region[t], right = region[n == CADT_NONE ? count : n];
+      const cadt_u32 left = region[t], right = region[n == CADT_NONE ? triangles : n];
       if (left == right || (roots && !cadt_unite(roots, left, right))) continue;
       const cadt_u32 place = cadt_add_relaxed(counter, 1u);
       if (place >= room) continue;

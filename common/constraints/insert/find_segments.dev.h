@@ -13,6 +13,7 @@ enum {
   CADT_SEGMENTS_OTHERS,      /* segments that are not found as edges at once */
   CADT_SEGMENTS_PIECES,      /* that are no edges */
   CADT_SEGMENTS_LEFT,        /* of these, pieces that wait for another launch */
+  CADT_SEGMENTS_RETRIES,     /* how often one of them has waited (few_pieces.dev.h) */
   CADT_SEGMENTS_STRIDES,     /* of long pieces */
   CADT_SEGMENTS_BROKEN,      /* at which the mesh was found to be wrong */
   CADT_SEGMENTS_CROSSED,     /* pieces that cross a constrained edge */
@@ -135,6 +136,16 @@ CADT_FN cadt_u32 cadt_place_of_piece(CADT_GLOBAL cadt_u32* words) {
   return cadt_add_relaxed(words + CADT_SEGMENTS_PIECES, 1u);
 }
 
+CADT_FN void cadt_put_piece(const cadt_pieces* pieces, cadt_u32 place, cadt_u32 from, cadt_u32 to, cadt_u32 entry,
+                            cadt_u32 whole, cadt_u32 triangles, cadt_u32 left) {
+  pieces->ends[2u * place] = from;
+  pieces->ends[2u * place + 1u] = to;
+  pieces->entry[place] = entry;
+  pieces->upper[place] = whole ? left : CADT_NONE;
+  pieces->sizes[place] = whole ? triangles + 3u : CADT_NONE;
+  pieces->strides[place] = CADT_NONE;
+}
+
 /* Flags the edges of segments between the vertices of pairs, those of `which` or all from `first` on, and lists their
  * other pieces, as far as there is room; counts all of them. Those of more triangles than `limit` have strides if
  * `divides`, else they wait. */
@@ -165,12 +176,7 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
         reached = whole ? at.apex : to;
         const cadt_u32 place = cadt_is_seen(seen, step.half_edge, reached) ? CADT_NONE : cadt_place_of_piece(words);
         if (place < pieces.room) {
-          pieces.ends[2u * place] = from;
-          pieces.ends[2u * place + 1u] = reached;
-          pieces.entry[place] = step.half_edge;
-          pieces.upper[place] = whole ? left : CADT_NONE;
-          pieces.sizes[place] = whole ? triangles + 3u : CADT_NONE;
-          pieces.strides[place] = CADT_NONE;
+          cadt_put_piece(&pieces, place, from, reached, step.half_edge, whole, triangles, left);
           if (!whole && divides) { /* their number for now */
             const cadt_u32 strides = cadt_strides_for(p, q, cadt_load_point(mesh.points + at.apex));
             cadt_add_relaxed(words + CADT_SEGMENTS_STRIDES, strides);

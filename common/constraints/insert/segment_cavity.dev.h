@@ -184,6 +184,14 @@ CADT_FN void cadt_fill_or_queue(const cadt_segment_mesh* m, const cadt_rings* ri
   if (size > 1u) cadt_fill_chain(m, rings, *c, bases, words, counters);
 }
 
+/* The chains on both sides of a piece. */
+CADT_FN void cadt_chains_of_piece(const cadt_pieces* pieces, cadt_u32 s, cadt_chain* sides) {
+  const cadt_u32 begin = pieces->begins[s], end = begin + pieces->sizes[s] - 1u, b = begin + pieces->upper[s] + 1u;
+  const cadt_chain above = {begin, b, CADT_NONE, s}, below = {b, end, CADT_NONE, s};
+  sides[0] = above;
+  sides[1] = below;
+}
+
 /* Both polygons of the pieces that go on. \pre bases are CADT_NONE */
 CADT_KERNEL(cadt_fill_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMETERS, CADT_RINGS_PARAMETERS,
             cadt_u32 count, cadt_u32 grain, CADT_GLOBAL const cadt_u32* wins, CADT_GLOBAL cadt_u32* bases,
@@ -195,10 +203,10 @@ CADT_KERNEL(cadt_fill_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAME
   const cadt_chain_queues queues = {longer, others};
   CADT_FOR(s, count, grain) {
     if (!wins[s]) continue;
-    const cadt_u32 begin = pieces.begins[s], end = begin + pieces.sizes[s] - 1u, b = begin + pieces.upper[s] + 1u;
-    const cadt_chain above = {begin, b, CADT_NONE, s}, below = {b, end, CADT_NONE, s};
-    cadt_fill_or_queue(&mesh, &rings, &above, bases, &queues, CADT_CHAIN_LONG, CADT_CHAIN_LONG, words, &counters);
-    cadt_fill_or_queue(&mesh, &rings, &below, bases, &queues, CADT_CHAIN_LONG, CADT_CHAIN_LONG, words, &counters);
+    cadt_chain sides[2];
+    cadt_chains_of_piece(&pieces, s, sides);
+    for (cadt_u32 k = 0u; k < 2u; ++k)
+      cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_LONG, CADT_CHAIN_LONG, words, &counters);
   }
 }
 
@@ -248,29 +256,32 @@ CADT_KERNEL(cadt_fill_chains, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETER
   CADT_FOR(i, count, grain) { cadt_fill_chain(&mesh, &rings, chains[i], bases, words, &counters); }
 }
 
-/* Links the new triangles with those around the cavities, by the edges of the rings. */
+/* Links the new triangle at an edge of a ring with that around the cavity. */
+CADT_FN void cadt_link_place(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_u32 x,
+                             CADT_GLOBAL const cadt_u32* claims) {
+  const cadt_u32 half_edge = rings->edge[x], t = CADT_TRIANGLE_OF(half_edge), bits = rings->triangle[x];
+  if (half_edge == CADT_NONE) return;
+  cadt_u32 outer = rings->outer[x];
+  if (bits & CADT_RING_DANGLES) outer = rings->edge[claims[CADT_TRIANGLE_OF(outer)]];
+  m->across[3u * t + CADT_EDGE_OF(half_edge)] = outer;
+  if (!(bits & CADT_RING_DANGLES)) m->across[3u * CADT_TRIANGLE_OF(outer) + CADT_EDGE_OF(outer)] = half_edge;
+  if (bits & CADT_RING_FLAGGED) cadt_or_relaxed(m->edge_flags + t, 1u << CADT_EDGE_OF(half_edge));
+}
 CADT_KERNEL(cadt_link_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* claims) {
   CADT_SEGMENT_MESH(mesh);
   CADT_RINGS(rings);
-  CADT_FOR(x, count, grain) {
-    const cadt_u32 half_edge = rings.edge[x], t = CADT_TRIANGLE_OF(half_edge), bits = rings.triangle[x];
-    if (half_edge == CADT_NONE) continue;
-    cadt_u32 outer = rings.outer[x];
-    if (bits & CADT_RING_DANGLES) outer = rings.edge[claims[CADT_TRIANGLE_OF(outer)]];
-    mesh.across[3u * t + CADT_EDGE_OF(half_edge)] = outer;
-    if (!(bits & CADT_RING_DANGLES)) mesh.across[3u * CADT_TRIANGLE_OF(outer) + CADT_EDGE_OF(outer)] = half_edge;
-    if (bits & CADT_RING_FLAGGED) cadt_or_relaxed(mesh.edge_flags + t, 1u << CADT_EDGE_OF(half_edge));
-  }
+  CADT_FOR(x, count, grain) { cadt_link_place(&mesh, &rings, x, claims); }
 }
 
-/* Gives all claims up. */
+/* Gives a claim up. */
+CADT_FN void cadt_release_place(CADT_GLOBAL const cadt_u32* ring_triangle, cadt_u32 x, CADT_GLOBAL cadt_u32* claims) {
+  const cadt_u32 t = ring_triangle[x] & CADT_RING_NONE;
+  if (t != CADT_RING_NONE) cadt_store_relaxed(claims + t, CADT_NONE); /* several had claimed it */
+}
 CADT_KERNEL(cadt_release_cavities, CADT_GLOBAL const cadt_u32* ring_triangle, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* claims) {
-  CADT_FOR(x, count, grain) {
-    const cadt_u32 t = ring_triangle[x] & CADT_RING_NONE;
-    if (t != CADT_RING_NONE) cadt_store_relaxed(claims + t, CADT_NONE); /* several had claimed it */
-  }
+  CADT_FOR(x, count, grain) { cadt_release_place(ring_triangle, x, claims); }
 }
 
 #endif

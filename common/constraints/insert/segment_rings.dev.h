@@ -99,8 +99,31 @@ CADT_FN cadt_u32 cadt_write_ring(const cadt_segment_mesh* m, const cadt_pieces* 
   return crossed;
 }
 
-/* Writes the rings, of long pieces only how they begin and end, and claims triangles; counts pieces that cross
- * constrained edges. \pre claims are CADT_NONE */
+/* Writes the ring of a piece, of a long one only how it begins and ends, and claims its triangles; counts pieces that
+ * cross constrained edges. */
+CADT_FN void cadt_claim_cavity(const cadt_segment_mesh* m, const cadt_pieces* pieces, const cadt_rings* rings,
+                               cadt_u32 s, CADT_GLOBAL cadt_u32* claims, CADT_GLOBAL cadt_u32* words,
+                               cadt_counters* counters) {
+  const cadt_u32 begin = pieces->begins[s], last = begin + pieces->sizes[s] - 1u, b = begin + pieces->upper[s] + 1u;
+  const cadt_u32 t = CADT_TRIANGLE_OF(pieces->entry[s]), k = CADT_EDGE_OF(pieces->entry[s]);
+  const cadt_ring_writer at = {begin + 1u, last - 1u, last - 1u};
+  cadt_put_vertex(rings, begin, pieces->ends[2u * s], s);
+  cadt_put_vertex(rings, last, pieces->ends[2u * s], s);
+  cadt_put_vertex(rings, b, pieces->ends[2u * s + 1u], s);
+  cadt_put_vertex(rings, at.high, cadt_corner_of(m, t, CADT_PREV(k)), s);
+  cadt_put_vertex(rings, at.low, cadt_corner_of(m, t, CADT_NEXT(k)), s);
+  rings->triangle[begin] = rings->triangle[last] = rings->triangle[b] = CADT_RING_NONE;
+  rings->triangle[at.high] = t;
+  rings->edge[begin] = CADT_HALF_EDGE(t, CADT_NEXT(k));
+  rings->edge[at.low] = CADT_HALF_EDGE(t, CADT_PREV(k));
+  rings->edge[last] = CADT_NONE;
+  cadt_min_relaxed(claims + t, cadt_key_of_piece(s));
+  if (pieces->strides[s] != CADT_NONE) return;
+  if (cadt_write_ring(m, pieces, rings, s, pieces->entry[s], CADT_NONE, at, claims, counters))
+    cadt_add_relaxed(words + CADT_SEGMENTS_CROSSED, 1u);
+}
+
+/* Those of all pieces. \pre claims are CADT_NONE */
 CADT_KERNEL(cadt_claim_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMETERS, CADT_RINGS_PARAMETERS,
             cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* claims, CADT_GLOBAL cadt_u32* wins,
             CADT_GLOBAL cadt_u32* words) {
@@ -119,23 +142,7 @@ CADT_KERNEL(cadt_claim_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAM
       }
       continue;
     }
-    const cadt_u32 last = begin + size - 1u, b = begin + pieces.upper[s] + 1u;
-    const cadt_u32 t = CADT_TRIANGLE_OF(pieces.entry[s]), k = CADT_EDGE_OF(pieces.entry[s]);
-    const cadt_ring_writer at = {begin + 1u, last - 1u, last - 1u};
-    cadt_put_vertex(&rings, begin, pieces.ends[2u * s], s);
-    cadt_put_vertex(&rings, last, pieces.ends[2u * s], s);
-    cadt_put_vertex(&rings, b, pieces.ends[2u * s + 1u], s);
-    cadt_put_vertex(&rings, at.high, cadt_corner_of(&mesh, t, CADT_PREV(k)), s);
-    cadt_put_vertex(&rings, at.low, cadt_corner_of(&mesh, t, CADT_NEXT(k)), s);
-    rings.triangle[begin] = rings.triangle[last] = rings.triangle[b] = CADT_RING_NONE;
-    rings.triangle[at.high] = t;
-    rings.edge[begin] = CADT_HALF_EDGE(t, CADT_NEXT(k));
-    rings.edge[at.low] = CADT_HALF_EDGE(t, CADT_PREV(k));
-    rings.edge[last] = CADT_NONE;
-    cadt_min_relaxed(claims + t, cadt_key_of_piece(s));
-    if (pieces.strides[s] != CADT_NONE) continue;
-    if (cadt_write_ring(&mesh, &pieces, &rings, s, pieces.entry[s], CADT_NONE, at, claims, &counters))
-      cadt_add_relaxed(words + CADT_SEGMENTS_CROSSED, 1u);
+    cadt_claim_cavity(&mesh, &pieces, &rings, s, claims, words, &counters);
   }
 }
 
@@ -170,49 +177,56 @@ CADT_KERNEL(cadt_claim_strides, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAME
   }
 }
 
-/* Which pieces do not go on: wins becomes 0. */
+/* Whether the piece of place x goes on, as far as that place can tell: if not, wins becomes 0. */
+CADT_FN void cadt_decide_place(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_u32 x,
+                               CADT_GLOBAL const cadt_u32* claims, CADT_GLOBAL cadt_u32* wins) {
+  const cadt_u32 s = rings->piece[x], key = cadt_key_of_piece(s), t = rings->triangle[x], edge = rings->edge[x];
+  cadt_u32 lost = t != CADT_RING_NONE && claims[t] != key ? 1u : 0u;
+  if (edge != CADT_NONE) {
+    const cadt_u32 outer = cadt_across_of(m, edge), holder = claims[CADT_TRIANGLE_OF(outer)];
+    if (holder < key) lost = 1u;
+    rings->outer[x] = outer;
+    rings->triangle[x] =
+        t | (holder == key ? CADT_RING_DANGLES : 0u) | (cadt_is_flagged(m, edge) ? CADT_RING_FLAGGED : 0u);
+  }
+  if (lost) cadt_store_relaxed(wins + s, 0u);
+}
 CADT_KERNEL(cadt_decide_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* claims, CADT_GLOBAL cadt_u32* wins) {
   CADT_SEGMENT_MESH(mesh);
   CADT_RINGS(rings);
-  CADT_FOR(x, count, grain) {
-    const cadt_u32 s = rings.piece[x], key = cadt_key_of_piece(s), t = rings.triangle[x], edge = rings.edge[x];
-    cadt_u32 lost = t != CADT_RING_NONE && claims[t] != key ? 1u : 0u;
-    if (edge != CADT_NONE) {
-      const cadt_u32 outer = cadt_across_of(&mesh, edge), holder = claims[CADT_TRIANGLE_OF(outer)];
-      if (holder < key) lost = 1u;
-      rings.outer[x] = outer;
-      rings.triangle[x] =
-          t | (holder == key ? CADT_RING_DANGLES : 0u) | (cadt_is_flagged(&mesh, edge) ? CADT_RING_FLAGGED : 0u);
-    }
-    if (lost) cadt_store_relaxed(wins + s, 0u);
-  }
+  CADT_FOR(x, count, grain) { cadt_decide_place(&mesh, &rings, x, claims, wins); }
 }
 
 /* The rings of the other pieces lose their edges. Of those that go on nobody asks any more who holds a triangle: its
  * claim becomes the place of its edge in the ring. (The first and the last triangle have two, but no other edge of the
  * ring is on their other side.) */
+CADT_FN void cadt_settle_place(const cadt_rings* rings, cadt_u32 x, CADT_GLOBAL cadt_u32* claims,
+                               CADT_GLOBAL const cadt_u32* wins) {
+  if (rings->edge[x] == CADT_NONE) return;
+  if (wins[rings->piece[x]])
+    cadt_store_relaxed(claims + CADT_TRIANGLE_OF(rings->edge[x]), x);
+  else
+    rings->edge[x] = CADT_NONE;
+}
 CADT_KERNEL(cadt_settle_cavities, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* claims,
             CADT_GLOBAL const cadt_u32* wins) {
   CADT_RINGS(rings);
-  CADT_FOR(x, count, grain) {
-    if (rings.edge[x] == CADT_NONE) continue;
-    if (wins[rings.piece[x]])
-      cadt_store_relaxed(claims + CADT_TRIANGLE_OF(rings.edge[x]), x);
-    else
-      rings.edge[x] = CADT_NONE;
-  }
+  CADT_FOR(x, count, grain) { cadt_settle_place(&rings, x, claims, wins); }
 }
 
-/* The ends of pieces that have to wait go to `pairs`. */
+/* The ends of a piece that has to wait go to `pairs`. */
+CADT_FN void cadt_keep_piece(CADT_GLOBAL const cadt_u32* ends, cadt_u32 s, CADT_GLOBAL cadt_u32* pairs,
+                             CADT_GLOBAL cadt_u32* words) {
+  const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_LEFT, 1u);
+  pairs[2u * place] = ends[2u * s];
+  pairs[2u * place + 1u] = ends[2u * s + 1u];
+}
 CADT_KERNEL(cadt_keep_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL const cadt_u32* wins,
             CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* words) {
   CADT_PIECES(pieces);
   CADT_FOR(s, count, grain) {
-    if (wins[s] || !pieces.sizes[s]) continue;
-    const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_LEFT, 1u);
-    pairs[2u * place] = pieces.ends[2u * s];
-    pairs[2u * place + 1u] = pieces.ends[2u * s + 1u];
+    if (!wins[s] && pieces.sizes[s]) cadt_keep_piece(pieces.ends, s, pairs, words);
   }
 }
 

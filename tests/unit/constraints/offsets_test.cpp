@@ -59,7 +59,7 @@ TEST(ConstraintOffsets, LinksOfLargeDomains) {
   const std::array<std::uint32_t, 1> flags = {7};
   const std::array<std::uint32_t, 2> region = {7, 9};
   std::uint32_t counter = place;
-  cadt_domain_links(0, 1, vertices.data(), neighbors.data(), flags.data(), 1, 1, region.data(), nullptr, nullptr,
+  cadt_domain_links(0, 1, vertices.data(), neighbors.data(), flags.data(), 1, 1, 1, 1, region.data(), nullptr, nullptr,
                     nullptr, nullptr, &counter, links.data(), place + 3);
   EXPECT_EQ(counter, place + 3);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -87,10 +88,10 @@ inline Sorted sorted(const NamedPoints& set, double part = 1) {
   }
   const cadt_u32 levels = cadt_grid_levels(&s.grid);
   std::vector<std::uint32_t> flags(n + 1), ranks(n + 1);
-  std::uint32_t descents = 0;
+  std::array<std::uint32_t, 2> found{};
   cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, flags.data(), n, levels, n,
-                  &descents);
-  EXPECT_EQ(descents, 0u);
+                  found.data());
+  EXPECT_EQ(found[0], 0u);
   std::exclusive_scan(flags.begin(), flags.end(), ranks.begin(), 0u);
   s.tiles.resize(ranks[n] + 1);
   cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, ranks.data(), s.tiles.data(), n,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -60,33 +61,6 @@ std::map<std::uint32_t, int> tiles_by_definition(const Keys& keys, unsigned leve
   return tiles;
 }
 
-/// The same by the kernels, as the driver runs them.
-std::map<std::uint32_t, int> tiles_divided_again(const Keys& keys, unsigned levels) {
-  const auto n = static_cast<std::uint32_t>(keys.size());
-  Keys before, crowded, ranks(n + 1);
-  std::vector<cadt_tile> tiles;
-  const auto make = [&] {
-    const std::uint32_t* const old = before.empty() ? nullptr : before.data();
-    const std::uint32_t* const marks = before.empty() ? nullptr : crowded.data();
-    std::uint32_t descents = 0;
-    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), n, levels, n, &descents);
-    std::exclusive_scan(ranks.begin(), ranks.end(), ranks.begin(), 0u);
-    tiles.assign(ranks[n] + 1, {});
-    cadt_tile_pack(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), tiles.data(), n, levels, n);
-  };
-  make();
-  crowded.assign(tiles.size() - 1, 0);
-  std::uint32_t any = 0;
-  cadt_tile_overfull(0, 1, keys.data(), nullptr, 0, ranks.data(), tiles.data(), n, levels, n, crowded.data(), &any);
-  EXPECT_EQ(any != 0, std::ranges::count(crowded, 1u) != 0);
-  before = ranks;
-  make();
-  EXPECT_EQ(tiles.back().begin, n);
-  std::map<std::uint32_t, int> made;
-  for (std::size_t t = 0; t + 1 < tiles.size(); ++t) made[tiles[t].begin] = tiles[t].level;
-  return made;
-}
-
 std::map<std::uint32_t, int> tiles_found(const Keys& keys, unsigned levels) {
   std::map<std::uint32_t, int> tiles;
   const cadt_keys view = cadt_keys_of(keys.data(), nullptr, 0);
@@ -95,6 +69,44 @@ std::map<std::uint32_t, int> tiles_found(const Keys& keys, unsigned levels) {
     if (level >= 0) tiles[i] = level;
   }
   return tiles;
+}
+
+/// Of every CADT_TILE_OVERFULL-th point on: so many in a small part of their tile.
+std::uint32_t crowded_samples(const Keys& keys, unsigned levels, const std::map<std::uint32_t, int>& tiles) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < keys.size(); i += CADT_TILE_OVERFULL) {
+    const auto next = tiles.upper_bound(i);
+    const auto end = next == tiles.end() ? static_cast<std::uint32_t>(keys.size()) : next->first;
+    const std::uint32_t last = std::min<std::uint32_t>(i + CADT_TILE_OVERFULL, end);
+    count += is_crowded(keys, i, last, static_cast<unsigned>(std::prev(next)->second), levels) ? 1 : 0;
+  }
+  return count;
+}
+
+/// The same tiles by the kernels, as the driver runs them.
+std::map<std::uint32_t, int> tiles_divided_again(const Keys& keys, unsigned levels) {
+  const auto n = static_cast<std::uint32_t>(keys.size());
+  Keys before, crowded, ranks(n + 1);
+  std::vector<cadt_tile> tiles;
+  const auto make = [&] {
+    const std::uint32_t* const old = before.empty() ? nullptr : before.data();
+    const std::uint32_t* const marks = before.empty() ? nullptr : crowded.data();
+    std::array<std::uint32_t, 2> found{};
+    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), n, levels, n, found.data());
+    if (!old) EXPECT_EQ(found[1], crowded_samples(keys, levels, tiles_found(keys, levels)));
+    std::exclusive_scan(ranks.begin(), ranks.end(), ranks.begin(), 0u);
+    tiles.assign(ranks[n] + 1, {});
+    cadt_tile_pack(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), tiles.data(), n, levels, n);
+  };
+  make();
+  crowded.assign(tiles.size() - 1, 0);
+  cadt_tile_overfull(0, 1, keys.data(), nullptr, 0, ranks.data(), tiles.data(), n, levels, n, crowded.data());
+  before = ranks;
+  make();
+  EXPECT_EQ(tiles.back().begin, n);
+  std::map<std::uint32_t, int> made;
+  for (std::size_t t = 0; t + 1 < tiles.size(); ++t) made[tiles[t].begin] = tiles[t].level;
+  return made;
 }
 
 TEST(Tiles, AreTheLargestSquaresWithFewPoints) {
@@ -145,9 +157,9 @@ TEST(Tiles, CountsKeysOutOfOrder) {
   std::vector<std::uint32_t> flags(keys.size() + 1);
   const auto n = static_cast<std::uint32_t>(keys.size());
   for (const std::uint32_t expected : {3u, 0u}) {
-    std::uint32_t descents = 0;
-    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, nullptr, nullptr, flags.data(), n, 2, n, &descents);
-    EXPECT_EQ(descents, expected);
+    std::array<std::uint32_t, 2> found{};
+    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, nullptr, nullptr, flags.data(), n, 2, n, found.data());
+    EXPECT_EQ(found[0], expected);
     std::ranges::sort(keys);
   }
 }

@@ -14,10 +14,10 @@
 #include "common/constraints/insert/segment_cavity.dev.h"
 
 enum {
-  CADT_FEW_PIECES = 1024,                  /* at most, */
-  CADT_FEW_TRIANGLES = CADT_CHAIN_LONG,    /* short: that cross no more triangles; one work-item fills their chains, */
-  CADT_FEW_PLACES = CADT_CHAIN_LONG + 4,   /* and this is room for their rings */
-  CADT_FEW_TURNS = 256,                    /* of a launch, at most */
+  CADT_FEW_PIECES = 1024,                /* at most, */
+  CADT_FEW_TRIANGLES = CADT_CHAIN_LONG,  /* short: that cross no more triangles; one work-item fills their chains, */
+  CADT_FEW_PLACES = CADT_CHAIN_LONG + 4, /* and this is room for their rings */
+  CADT_FEW_TURNS = 256,                  /* of a launch, at most */
   CADT_FEW_LANES = 512
 };
 
@@ -93,16 +93,18 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
       CADT_TEAM_FOR(x, all) { cadt_release_place(ring_triangle, x, claims); }
       count = cadt_load_relaxed(words + CADT_SEGMENTS_LEFT);
       retries += count;
-      over = !won[0] || cadt_load_relaxed(words + CADT_SEGMENTS_CROSSED) ||
-                     cadt_load_relaxed(words + CADT_SEGMENTS_BROKEN)
-                 ? 1u
-                 : 0u;
+      over =
+          !won[0] || cadt_load_relaxed(words + CADT_SEGMENTS_CROSSED) || cadt_load_relaxed(words + CADT_SEGMENTS_BROKEN)
+              ? 1u
+              : 0u;
       CADT_GLOBAL cadt_u32* const before = now;
       now = next;
       next = before;
       CADT_TEAM_SYNC_ALL();
     }
-    if (now != pairs) CADT_TEAM_FOR(i, 2u * count) { pairs[i] = now[i]; }
+    if (now != pairs) CADT_TEAM_FOR(i, 2u * count) {
+        pairs[i] = now[i];
+      }
     if (cadt_team_lane == 0u) words[CADT_SEGMENTS_RETRIES] = retries;
   }
 }

@@ -93,7 +93,9 @@ std::map<std::uint32_t, int> tiles_divided_again(const Keys& keys, unsigned leve
     const std::uint32_t* const marks = before.empty() ? nullptr : crowded.data();
     std::array<std::uint32_t, 2> found{};
     cadt_tile_flags(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), n, levels, n, found.data());
-    if (!old) EXPECT_EQ(found[1], crowded_samples(keys, levels, tiles_found(keys, levels)));
+    if (!old) {
+      EXPECT_EQ(found[1], crowded_samples(keys, levels, tiles_found(keys, levels)));
+    }
     std::exclusive_scan(ranks.begin(), ranks.end(), ranks.begin(), 0u);
     tiles.assign(ranks[n] + 1, {});
     cadt_tile_pack(0, 1, keys.data(), nullptr, 0, old, marks, ranks.data(), tiles.data(), n, levels, n);

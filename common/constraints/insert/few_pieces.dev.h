@@ -4,9 +4,9 @@
  * side, as along a coast, half of them have to wait at each turn. The last turns have next to nothing to do, and a
  * dozen launches each would take longer than their work. So one team takes all turns, with barriers for launches:
  *
- *     +--> find, claim  |  decide  |  settle  |  fill  |  link  |  give up claims --+
- *     |                 barriers of the team                                        |
- *     +------------------------- pieces that have to wait <-------------------------+
+ *     +--> find  |  claim  |  decide  |  settle  |  fill  |  link  |  give up claims --+
+ *     |                         barriers of the team                                   |
+ *     +--------------------------- pieces that have to wait <--------------------------+
  */
 #ifndef CADT_CONSTRAINTS_FEW_PIECES_H
 #define CADT_CONSTRAINTS_FEW_PIECES_H
@@ -68,6 +68,9 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
         pieces.begins[s] = cadt_team_add(places, size);
         bases[s] = CADT_NONE;
         wins[s] = cadt_has_ring(&pieces, &rings, s);
+      }
+      CADT_TEAM_SYNC_ALL(); /* whoever crosses what has just become an edge sees its flag */
+      CADT_TEAM_FOR(s, count) {
         if (wins[s]) cadt_claim_cavity(&mesh, &pieces, &rings, s, claims, words, &counters);
       }
       CADT_TEAM_SYNC_ALL();

@@ -270,6 +270,23 @@ TEST_P(SpecialCases, CrossingOfInsertedSegments) {
   EXPECT_GT(refused, 10);
 }
 
+// On GPUs one team inserts the last pieces. Here one of them has become an edge by what others have inserted, and is
+// found to be one in the turn in which the other one, which crosses it, is inserted.
+TEST_P(SpecialCases, CrossingOfWhatHasBecomeAnEdge) {
+  const Points xy = {0, 6, 6, 0, 2, 2, 7, 4, 2, 4, 3, 3, 3, 7, 5, 6, 7, 2};
+  const std::vector<Segment> segments = {{1, 1}, {6, 8}, {5, 2}, {8, 4}, {6, 5}, {6, 6}};
+  for (int round = 0; round < 6; ++round) {
+    std::vector<Segment> in_order(segments);
+    std::ranges::rotate(in_order, in_order.begin() + round);
+    try {
+      static_cast<void>(triangulated(xy, in_order));
+      ADD_FAILURE() << "no error";
+    } catch (const CrossingError& error) {
+      EXPECT_EQ(error.pairs().size(), 1U);
+    }
+  }
+}
+
 /// A long segment crosses a constrained edge at the side of a cavity that is filled in the launch before: the flag of
 /// the edge goes along.
 TEST_P(SpecialCases, CrossingOfAnEdgeBesideACavity) {

@@ -50,7 +50,8 @@ class BaseOnDevice : public OpenClTest {
         const std::uint32_t other = across[3 * t + k];
         EXPECT_EQ(across[3 * (other / 4) + other % 4], 4 * t + k);
       }
-      if (t < mesh.triangles) triangles.push_back({ids[vertices[3 * t]], ids[vertices[3 * t + 1]], ids[vertices[3 * t + 2]]});
+      if (t < mesh.triangles)
+        triangles.push_back({ids[vertices[3 * t]], ids[vertices[3 * t + 1]], ids[vertices[3 * t + 2]]});
     }
     return sorted(std::move(triangles));
   }

@@ -95,12 +95,13 @@ class Constrainer {
       pairs = &left;
       // Of the first launch, which takes whole segments, pieces alone.
       const std::size_t tried = launch == 0 ? pieces.count : taken;
-      if (tried == 1 && waiting == 1 && launch != 0)
+      // A segment with a vertex on it is two pieces, which meet there.
+      if (pieces.count == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
       ctx_.statistics.segment_retries += waiting;
       if (launch == 0) most = count;
       if (tries_few && count > 1 && count <= CADT_FEW_PIECES) {
-        tries_few = false;  // what is left then is long
+        tries_few = false;  // what is left then is long, or nearly so
         if (!insert_few(left, count)) return Outcome::crossed;
       }
       const std::size_t next = next_tries(tried, waiting, launch == 0);
@@ -304,10 +305,11 @@ class Constrainer {
                                                             rings, count, pairs, others, claims_, wins, bases, words_);
     const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
     ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+    if (found[CADT_SEGMENTS_CROSSED] != 0) return false;
     require_sound(found[CADT_SEGMENTS_BROKEN]);
     ctx_.statistics.segment_retries += found[CADT_SEGMENTS_RETRIES];
     count = found[CADT_SEGMENTS_LEFT];
-    return found[CADT_SEGMENTS_CROSSED] == 0;
+    return true;
   }
 
   /// Walks along long pieces; those with a vertex on them go to `left`.

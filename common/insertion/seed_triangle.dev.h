@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The seed triangle and its three ghost triangles: the mesh that all points are inserted into. (The paper's super
- * triangle, section 4.1, would spoil the hull.)
+ * The seed triangle and its three ghost triangles: the mesh that all points are inserted into, without a base
+ * (base_mesh.dev.h). (The paper's super triangle, section 4.1, would spoil the hull.)
  *
  *              c
  *       g1    / \    g0         face = (a, b, c)      g0.0,   g1.0, g2.0

@@ -26,8 +26,8 @@
 #include "common/portable/layout.dev.h"
 #include "common/predicates/filtered_predicates.dev.h"
 
-/* The mesh as the kernels see it. `center` is the centroid of the first three vertices
- * (seed_triangle.dev.h), rounded. */
+/* The mesh as the kernels see it. `center` is the centroid of three vertices, the first ones
+ * (seed_triangle.dev.h) or of the base (base_mesh.dev.h), rounded. */
 typedef struct {
   CADT_GLOBAL cadt_locked_triangle* locked;
   CADT_GLOBAL const cadt_point* points;

@@ -58,7 +58,7 @@ KeyGrid choose_grid(const Bounds& bounds, int bits) {
 }
 
 KeyGrid grid_of_all(const Bounds& bounds, std::size_t n, bool finest) {
-  // About sixteen square cells a point keep runs of equal keys short on well-spread data.
+  // About sixteen square cells a point suit well-spread data: runs of equal keys are short.
   const int suitable = std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, most_key_bits);
   KeyGrid grid = choose_grid(bounds, finest ? most_key_bits : suitable);
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;

@@ -32,15 +32,16 @@ constexpr std::size_t most_in_base = 16384;
 
 /// The mesh of some of the residual vertices, to insert the others into; nothing if they cannot be wrapped.
 std::optional<BaseMesh> wrap_base(Context& ctx, const SortedPoints& points, std::size_t all) {
-  const std::size_t n = points.distinct, most = std::min(most_in_base, n / 4);
+  const std::size_t n = points.distinct, most = std::clamp<std::size_t>(n / 4, 1, most_in_base);
   BaseMesh base;
   while (blocks_of_level(n, base.level) > most) ++base.level;
   const std::size_t count = blocks_of_level(n, base.level);
   const Allocation picked = ctx.memory.allocate(count * sizeof(cadt_point));
   ctx.launcher.run<KernelId::cadt_pick_base>(points.points, n, base.level, ctx.launcher.grid(count), picked);
+  const std::uint64_t wrapped = ctx.statistics.wrapped_stars;
   std::optional<Mesh> mesh = wrap_mesh(ctx, picked, count, all, MeshUse::part);
+  ctx.statistics.wrapped_stars = wrapped;  // insertion changes these stars
   if (!mesh) return std::nullopt;
-  ctx.statistics.wrapped_stars = 0;  // insertion changes them
   base.mesh = std::move(*mesh);
   return base;
 }

@@ -21,31 +21,31 @@ enum {
   CADT_FEW_LANES = 512
 };
 
-/* Finds piece s between vertices a and b. Its size is 0 if it is an edge, CADT_NONE if it is not short. */
+/* Finds piece s between vertices a and b. Its size is 0 if it is an edge, CADT_NONE if it is not short, or if a vertex
+ * lies on it, which nobody has seen yet on one that has been too long for a walk. */
 CADT_FN void cadt_find_short_piece(const cadt_segment_mesh* m, const cadt_pieces* pieces, cadt_u32 s, cadt_u32 a,
                                    cadt_u32 b, CADT_GLOBAL cadt_u32* words, cadt_counters* counters) {
   const cadt_segment_step step = cadt_next_step(m, a, b, counters);
   const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
-  cadt_u32 triangles = 1u, left = 1u, whole = 1u;
-  pieces->sizes[s] = 0u;
-  if (step.kind == CADT_STEP_EDGE && step.vertex == to) {
-    cadt_flag_edge(m, step.half_edge);
-    return;
-  }
-  cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
-  if (step.kind == CADT_STEP_ENTER)
-    whole = cadt_walk_piece(m, &at, cadt_load_point(m->points + from), to, cadt_load_point(m->points + to),
-                            CADT_FEW_TRIANGLES, &triangles, &left, counters);
-  if (step.kind != CADT_STEP_ENTER || (whole && at.apex != to)) { /* no vertex lies on a piece */
+  pieces->sizes[s] = CADT_NONE;
+  if (step.kind == CADT_STEP_ENTER) {
+    cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
+    cadt_u32 triangles = 1u, left = 1u;
+    const cadt_u32 whole =
+        cadt_walk_piece(m, &at, cadt_load_point(m->points + from), to, cadt_load_point(m->points + to),
+                        CADT_FEW_TRIANGLES, &triangles, &left, counters);
+    if (whole && at.apex == to) cadt_put_piece(pieces, s, from, to, step.half_edge, 1u, triangles, left);
+  } else if (step.kind == CADT_STEP_NOWHERE) {
     cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
-    return;
+  } else if (step.vertex == to) {
+    cadt_flag_edge(m, step.half_edge);
+    pieces->sizes[s] = 0u;
   }
-  cadt_put_piece(pieces, s, from, to, step.half_edge, whole, triangles, left);
 }
 
 /* Inserts the `count` pieces between the vertices of `pairs`, as far as they are short. Those that are left are in
- * `pairs` again, and counted; so is how often one had to wait. `others`: room for as many pairs. A piece that crosses a
- * constrained edge ends it. \pre claims are CADT_NONE; there is room for CADT_FEW_PLACES a piece */
+ * `pairs` again, and counted; so is how often a short one had to wait. `others`: room for as many pairs. A piece that
+ * crosses a constrained edge ends it. \pre claims are CADT_NONE; there is room for CADT_FEW_PLACES a piece */
 CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMETERS,
                  CADT_RINGS_PARAMETERS, cadt_u32 count, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* others,
                  CADT_GLOBAL cadt_u32* claims, CADT_GLOBAL cadt_u32* wins, CADT_GLOBAL cadt_u32* bases,
@@ -54,11 +54,12 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
   CADT_PIECES(pieces);
   CADT_RINGS(rings);
   CADT_DECLARE_COUNTERS(counters);
-  CADT_TEAM_MEMORY cadt_u32 places[1], won[1];
+  CADT_TEAM_MEMORY cadt_u32 places[1], won[1], waited[1];
   CADT_FOR_TEAMS(team, 1u, 1u) {
     CADT_GLOBAL cadt_u32* now = pairs;
     CADT_GLOBAL cadt_u32* next = others;
-    cadt_u32 retries = 0u, over = 0u;
+    cadt_u32 over = 0u;
+    if (cadt_team_lane == 0u) waited[0] = 0u;
     for (cadt_u32 turn = 0u; !over && count && turn < CADT_CAST(cadt_u32, CADT_FEW_TURNS); ++turn) {
       if (cadt_team_lane == 0u) places[0] = won[0] = words[CADT_SEGMENTS_LEFT] = 0u;
       CADT_TEAM_SYNC_ALL();
@@ -87,6 +88,7 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
           for (cadt_u32 k = 0u; k < 2u; ++k)
             if (sides[k].high - sides[k].low > 1u) cadt_fill_chain(&mesh, &rings, sides[k], bases, words, &counters);
         } else if (pieces.sizes[s]) {
+          if (pieces.sizes[s] != CADT_NONE) cadt_team_add(waited, 1u);
           cadt_keep_piece(now, s, next, words);
         }
       }
@@ -95,7 +97,6 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
       CADT_TEAM_SYNC_ALL();
       CADT_TEAM_FOR(x, all) { cadt_release_place(ring_triangle, x, claims); }
       count = cadt_load_relaxed(words + CADT_SEGMENTS_LEFT);
-      retries += count;
       over =
           !won[0] || cadt_load_relaxed(words + CADT_SEGMENTS_CROSSED) || cadt_load_relaxed(words + CADT_SEGMENTS_BROKEN)
               ? 1u
@@ -108,7 +109,7 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
     if (now != pairs) CADT_TEAM_FOR(i, 2u * count) {
         pairs[i] = now[i];
       }
-    if (cadt_team_lane == 0u) words[CADT_SEGMENTS_RETRIES] = retries;
+    if (cadt_team_lane == 0u) words[CADT_SEGMENTS_RETRIES] = waited[0];
   }
 }
 

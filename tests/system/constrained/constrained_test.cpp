@@ -48,6 +48,34 @@ TEST_P(Constrained, Lattices) {
   }
 }
 
+/// Short segments side by side, some of which wait for others a few times, and long ones that stay longer.
+TEST_P(Constrained, ShortOnesBetweenLongOnes) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Points xy = uniform_points(3000, seed);
+    const auto n = static_cast<std::int32_t>(xy.size() / 2);
+    std::vector<Segment> segments;
+    for (std::int32_t i = 0; i < 3; ++i) {
+      xy.insert(xy.end(), {-0.1, 0.2 + 0.3 * i, 1.1, 0.21 + 0.3 * i});
+      segments.push_back({n + 2 * i, n + 2 * i + 1});
+    }
+    Random random(seed);
+    for (int tries = 0; tries < 200000 && segments.size() < 63; ++tries) {
+      const Segment one = {static_cast<std::int32_t>(random.below(3000)),
+                           static_cast<std::int32_t>(random.below(3000))};
+      const auto i = 2 * static_cast<std::size_t>(one[0]), j = 2 * static_cast<std::size_t>(one[1]);
+      const double away = std::abs(xy[i] - xy[j]) + std::abs(xy[i + 1] - xy[j + 1]);
+      const bool in_the_middle = std::abs(xy[i] - 0.5) < 0.1 && std::abs(xy[i + 1] - 0.35) < 0.1;
+      if (one[0] == one[1] || away > 0.15 || !in_the_middle) continue;
+      if (std::ranges::none_of(segments, [&](const Segment& other) { return crosses(xy, one, other); }))
+        segments.push_back(one);
+    }
+    const Statistics& statistics = check(xy, segments).statistics();
+    EXPECT_GT(statistics.inserted_segments, 30U);
+    EXPECT_GT(statistics.segment_retries, 10U);
+  }
+}
+
 /// Loose ends of short segments in the cavity of a long one, alone and in bushes, also at its ends: chains that come to
 /// a vertex several times, at the apex and at the base.
 TEST_P(Constrained, SpikesInACavity) {

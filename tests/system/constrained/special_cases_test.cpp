@@ -270,6 +270,22 @@ TEST_P(SpecialCases, CrossingOfInsertedSegments) {
   EXPECT_GT(refused, 10);
 }
 
+// A segment through many triangles is not walked along at once, so nobody knows of the points on it: it is divided
+// at one of them, and then again.
+TEST_P(SpecialCases, PointsOnALongSegment) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto n = static_cast<std::int32_t>(100 + random.below(400));
+    Points xy;
+    for (std::int32_t i = 0; i < n; ++i) xy.insert(xy.end(), {random.uniform(0, 1), random.uniform(0, 0.3)});
+    xy.insert(xy.end(), {-0.1, 0.15, 1.1, 0.15});
+    const double first = random.uniform(0, 1), step = seed % 3 == 0 ? 0.1 : 0.01;
+    for (std::uint64_t i = 0; i < 1 + seed % 4; ++i) xy.insert(xy.end(), {first + step * static_cast<double>(i), 0.15});
+    check(xy, {{n, n + 1}});
+  }
+}
+
 // On GPUs one team inserts the last pieces. Here one of them has become an edge by what others have inserted, and is
 // found to be one in the turn in which the other one, which crosses it, is inserted.
 TEST_P(SpecialCases, CrossingOfWhatHasBecomeAnEdge) {

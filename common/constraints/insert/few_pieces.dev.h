@@ -106,9 +106,9 @@ CADT_TEAM_KERNEL(CADT_FEW_LANES, 1, cadt_insert_few_pieces, CADT_SEGMENT_MESH_PA
       next = before;
       CADT_TEAM_SYNC_ALL();
     }
-    if (now != pairs) CADT_TEAM_FOR(i, 2u * count) {
-        pairs[i] = now[i];
-      }
+    if (now != pairs) {
+      CADT_TEAM_FOR(i, 2u * count) { pairs[i] = now[i]; }
+    }
     if (cadt_team_lane == 0u) words[CADT_SEGMENTS_RETRIES] = waited[0];
   }
 }

@@ -34,7 +34,7 @@ typedef struct {
   CADT_GLOBAL cadt_u32* vertex_to_triangle; /* position -> a triangle near it, CADT_NONE until the point is inserted */
   CADT_GLOBAL cadt_u32* edge_flags;         /* a word a triangle, bit k: its edge k is constrained; null: none is */
   cadt_point center;
-  cadt_u32 first, second, third; /* positions of the first three vertices */
+  cadt_u32 first, second, third; /* positions of these three vertices */
   cadt_u32 stabilize,
       threshold; /* what happens to edges flipped more than `threshold` times (stabilized_flips.dev.h) */
   cadt_real epsilon;

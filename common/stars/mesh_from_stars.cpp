@@ -26,8 +26,8 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
-/// Most points of a base mesh. Above, insertion on cards is faster than gift wrapping of the residual vertices of
-/// coasts.
+/// Most points of a base mesh. Of coasts, 16,283 points are wrapped in 0.41 ms, 31,314 in 0.75 ms; to insert that many
+/// more takes 0.23 to 0.3 ms.
 constexpr std::size_t most_in_base = 16384;
 
 /// The mesh of some of the residual vertices, to insert the others into; nothing if they cannot be wrapped.

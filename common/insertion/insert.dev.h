@@ -78,17 +78,30 @@ CADT_FN cadt_u32 cadt_representing_vertex(cadt_u32 level, cadt_u32 block, cadt_u
 #endif
 }
 
-/* Where the walk to p starts, a point of the half of `block` that is inserted now: at the nearer one of the two
- * vertices beside it in sorted order, that of the other half and that of the block on its other side. The curve leaves
- * a row of points and comes back to it from elsewhere, so one of them may be far away, with thousands of triangles in
+/* The position in sorted order of vertex i, which does not represent all. */
+CADT_FN cadt_u32 cadt_position_of(cadt_u32 i, cadt_u32 n) {
+#if CADT_CONTIGUOUS
+  (void)n;
+  return i;
+#else
+  cadt_u32 level = 0u;
+  while (i < cadt_blocks_of(level + 1u, n)) ++level;
+  const cadt_u32 block = i - cadt_blocks_of(level + 1u, n);
+  return cadt_representative(level, 2u * block + (cadt_right_half(level + 1u, block) ^ 1u), n);
+#endif
+}
+
+/* Where the walk to p, vertex i, starts when the blocks of `level` are in the mesh: at the nearer one of the two
+ * vertices beside it in sorted order, that of its block and that of the block on its other side. The curve leaves a row
+ * of points and comes back to it from elsewhere, so one of them may be far away, with thousands of triangles in
  * between.
  *
  *     blocks         [ .  2 ][ 5  . ][ .  9 ]
  *     inserted now     1          6    8         6: from 5 or from 9
  */
-CADT_FN cadt_u32 cadt_start_beside(const cadt_locked_mesh* m, cadt_u32 level, cadt_u32 block, cadt_u32 n,
-                                   cadt_point p) {
-  const cadt_u32 beside = cadt_right_half(level, block) ? block - 1u : block + 1u;
+CADT_FN cadt_u32 cadt_start_beside(const cadt_locked_mesh* m, cadt_u32 level, cadt_u32 i, cadt_u32 n, cadt_point p) {
+  const cadt_u32 position = cadt_position_of(i, n), block = position >> level;
+  const cadt_u32 beside = position < cadt_representative(level, block, n) ? block - 1u : block + 1u;
   const cadt_u32 v = cadt_representing_vertex(level, block, n);
   const cadt_u32 w = beside < cadt_blocks_of(level, n) ? cadt_representing_vertex(level, beside, n) : v;
   const cadt_u32 at_v = cadt_load_relaxed(m->vertex_to_triangle + v),
@@ -126,10 +139,11 @@ CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, c
 #endif
 
 #if CADT_BUILDS(INSERTION)
-/* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then one level: of each
- * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it. */
+/* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then those of one level
+ * or, on GPUs, several, whose walks start at the vertices of the blocks of `above`, the level before. CPUs: of each of
+ * its blocks, from block `begin` on, the half that does not represent it; GPUs: the vertices from `begin` on. */
 CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
-            cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_points,
+            cadt_u32 count, cadt_u32 n, cadt_u32 above, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
@@ -156,13 +170,13 @@ CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32
             start = cadt_load_relaxed(mesh.vertex_to_triangle + i);
 #endif
           } else {
-            const cadt_u32 block = begin + (u - listed);
 #if CADT_CONTIGUOUS
-            i = cadt_representative(level, 2u * block + (cadt_right_half(level + 1u, block) ^ 1u), n);
+            const cadt_u32 block = begin + (u - listed);
+            i = cadt_representative(above - 1u, 2u * block + (cadt_right_half(above, block) ^ 1u), n);
 #else
-            i = cadt_blocks_of(level + 1u, n) + block;
+            i = begin + (u - listed);
 #endif
-            start = cadt_start_beside(&mesh, level + 1u, block, n, cadt_point_of(&mesh, i));
+            start = cadt_start_beside(&mesh, above, i, n, cadt_point_of(&mesh, i));
           }
           u += CADT_SPREAD_STEP(grain);
           tries = 0u;

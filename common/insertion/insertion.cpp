@@ -26,6 +26,10 @@ constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a wa
 // Partitions without locks: the representatives of blocks of 2^partition_level positions are inserted before, with
 // locks. The smaller a partition, the more of its points lie at its border.
 constexpr unsigned partition_level = 5;
+// After a base mesh, on GPUs. A launch waits for its longest chain of flips, so one of three levels takes two thirds of
+// the time of three (coasts: 0.67 ms instead of 0.99). Without a base it may be a row along a curve, where several
+// points beside each other at a time cause flip cascades.
+constexpr unsigned levels_per_launch = 3;
 constexpr int stalled_launches = 4;  // launches without progress after which one work-item does everything
 constexpr int unresolvable_launches = 64;
 constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
@@ -160,14 +164,19 @@ class IncrementalInsertion {
   /// All work-items insert points into the same mesh, level by level.
   void insert_in_parallel() {
     // points of a launch: a level and deferred ones, of one launch or of several since the last read
-    const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
+    const std::size_t most = base_ ? n_ - first_points() : n_ / 2;
+    const std::size_t limit = most + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     if (base_)
       lock_base();
     else
       launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
     const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
-    for (unsigned level = base_ ? base_->level : levels(); level-- > last;) insert_level(level, level == last);
+    for (unsigned above = base_ ? base_->level : levels(); above > last;) {
+      const unsigned level = above - std::min(above - last, base_ ? levels_per_launch : 1U);
+      insert_levels(above, level, last);
+      above = level;
+    }
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) finish_deferred();
   }
@@ -179,19 +188,21 @@ class IncrementalInsertion {
     base.across.release();
   }
 
-  void insert_level(unsigned level, bool last) {
-    // blocks of 2^(level+1) positions that have two halves
-    const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
+  /// Those below `above`, which are in the mesh, down to `level`.
+  void insert_levels(unsigned above, unsigned level, unsigned last) {
+    // On CPUs one level: of each block of `above` that has two halves, one.
+    const std::size_t there = blocks_of_level(n_, above), first = by_level_ ? there : 0;
+    const std::size_t count = blocks_of_level(n_, level) - there;
     std::size_t limit = points_per_launch(ctx_.device);
     if (ctx_.options.tuning.watch && ctx_.options.tuning.watch_points != 0)
       limit = std::min(limit, ctx_.options.tuning.watch_points);
     for (std::size_t begin = 0; begin < count; begin += limit) {
       const std::size_t size = std::min(limit, count - begin);
-      launch_insert(begin, size, level, false);
+      launch_insert(first + begin, size, above, false);
       inserted_ += size;
       // Reading what was deferred takes as long as the launch of a level of few points.
       since_poll_ += size;
-      if (since_poll_ < poll_interval && !last && !ctx_.options.tuning.watch) {
+      if (since_poll_ < poll_interval && level != last && !ctx_.options.tuning.watch) {
         deferred_ = {};  // the lists [1] are done; what this launch defers stays on the lists [0]
         continue;
       }
@@ -251,8 +262,9 @@ class IncrementalInsertion {
     std::swap(deferred_edges_[0], deferred_edges_[1]);
   }
 
-  /// Launches the deferred edges, and the deferred points with `size` blocks. `serial`: one work-item each.
-  void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool serial) {
+  /// Launches the deferred edges, and the deferred points with `size` others (cadt_insert). `serial`: one work-item
+  /// each.
+  void launch_insert(std::size_t begin, std::size_t size, unsigned above, bool serial) {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
     const auto grid_of = [&](std::uint32_t of) { return serial ? LaunchGrid{1, of, of} : launch_.grid_spread(of); };
     if (deferred_.edges != 0)
@@ -260,7 +272,7 @@ class IncrementalInsertion {
                                                  deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
     if (count == 0) return;
     const LaunchGrid c = grid_of(count);
-    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points, begin, count, n_, level,
+    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points, begin, count, n_, above,
                                        c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
                                        edge_capacity_, counters_);
   }

@@ -98,7 +98,7 @@ TEST(BaseMesh, OthersAreInsertedIntoIt) {
       for (cadt_u32 below = level; below-- > 0;)
         for (cadt_u32 block = 0; block < cadt_blocks_of(below, n) / 2; ++block) {
           const cadt_u32 i = cadt_blocks_of(below + 1, n) + block;
-          insert(m, i, cadt_start_beside(&m.mesh, below + 1, block, n, m.points[i]));
+          insert(m, i, cadt_start_beside(&m.mesh, below + 1, i, n, m.points[i]));
         }
       ASSERT_EQ(m.counts[1], 0U);
       expect_delaunay(m, 2 * std::size_t{count} - 2);

@@ -73,8 +73,9 @@ class Offsets : public testing::Test {
            CADT_STABILIZE_OFF, 0U, 0.0, args...);
   }
 
-  void insert(const std::uint32_t* list, std::uint32_t listed, std::uint32_t count, std::uint32_t level) {
-    call(cadt_insert, list, listed, 0U, count, n, level, count, deferred_points.data(), deferred_edges.data(),
+  /// `above`: the level before.
+  void insert(const std::uint32_t* list, std::uint32_t listed, std::uint32_t count, std::uint32_t above) {
+    call(cadt_insert, list, listed, 0U, count, n, above, count, deferred_points.data(), deferred_edges.data(),
          deferred_counts.data(), static_cast<std::uint32_t>(deferred_edges.size()), counters.data());
     EXPECT_EQ(deferred_counts[0], 0U) << "points are left";
     EXPECT_EQ(deferred_counts[1], 0U) << "edges are left";
@@ -140,7 +141,7 @@ TEST_F(Offsets, FirstLevelsOfTheLargestCall) {
   const cadt::Triangulation expected = small_mesh(compact);
   ASSERT_TRUE(expected.duplicates().empty());
   start(root, n / 2, vertices[7] == root ? vertices[8] : vertices[7]);
-  for (std::uint32_t level = levels; level-- > last_level;) insert(nullptr, 0, (((n - 1) >> level) + 1) / 2, level);
+  for (std::uint32_t level = levels; level-- > last_level;) insert(nullptr, 0, (((n - 1) >> level) + 1) / 2, level + 1);
   expect_certified(vertices);
   std::set<Face> found, wanted;
   for (const std::uint32_t v : vertices)

@@ -20,8 +20,8 @@ std::vector<cadt_point> by_level(const std::vector<cadt_point>& sorted) {
   return points;
 }
 
-/// Inserts `sorted` one after another, level by level.
-Walks insert_all(const std::vector<cadt_point>& sorted) {
+/// Inserts `sorted` one after another, level by level; walks start as if a launch inserted so many levels.
+Walks insert_all(const std::vector<cadt_point>& sorted, std::uint32_t levels_per_launch = 1) {
   SeededMesh m(by_level(sorted));
   const std::uint32_t n = m.size();
   CADT_DECLARE_WORKLIST(work);
@@ -30,7 +30,8 @@ Walks insert_all(const std::vector<cadt_point>& sorted) {
     for (std::uint32_t block = 0; block < cadt_blocks_of(level, n) / 2; ++block) {
       const std::uint32_t i = cadt_blocks_of(level + 1, n) + block, before = m.counters.count[CADT_COUNT_WALK_STEPS];
       if (i <= 2) continue;  // of the seed triangle
-      cadt_u32 start = cadt_start_beside(&m.mesh, level + 1, block, n, m.points[i]);
+      const std::uint32_t above = (level / levels_per_launch + 1) * levels_per_launch;
+      cadt_u32 start = cadt_start_beside(&m.mesh, above, i, n, m.points[i]);
       cadt_worklist_begin(&work, i, 1U << 20);
       work.apex_point = m.points[i];
       work.size = cadt_try_insert(&m.mesh, i, m.points[i], &start, work.half_edge, &m.counters);
@@ -59,6 +60,7 @@ TEST(WalkStart, RowsToWhichTheOrderComesBack) {
   add_row(points, 2500, 0.3, random);
   add_row(points, 2700, 0.5, random);
   EXPECT_LT(insert_all(points).longest, 100U);
+  EXPECT_LT(insert_all(points, 3).longest, 120U);
 }
 
 // Evenly spread points, in the order of their rows, each in the other direction than the last.

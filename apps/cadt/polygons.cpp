@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace cadt::cli {
 namespace {
@@ -70,23 +71,51 @@ Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
   return graph;
 }
 
-/// What is inside of a polygon whose rings may cross, and whether something is. Its points come once more, behind all
-/// others.
-bool append_crossed(RegionResult& result, const io::PolygonsFile& file, std::size_t p, const std::string& name,
-                    const ConstraintOptions& constraints, const Options& options, bool quiet) {
+/// Rings of too few points do not move to the grid if nothing crosses.
+ConstrainedTriangulation mend(const Graph& graph, PolygonStatus status, ConstraintOptions constraints,
+                              const Options& options) {
+  const InPhase phase(Phase::cooperative);
+  const Crossing rule = std::exchange(constraints.crossing, Crossing::error);
+  if (rule == Crossing::grid && status == PolygonStatus::too_few_points) {
+    try {
+      return triangulate_constrained(graph.points.view(), graph.segments, constraints, options);
+    } catch (const CrossingError&) {
+    }
+  }
+  constraints.crossing = rule;
+  return triangulate_constrained(graph.points.view(), graph.segments, constraints, options);
+}
+
+/// Appends what is inside of a polygon whose rings may cross. Its points come once more, behind all others. If there is
+/// nothing: why, as far as that does not follow from its status.
+std::optional<std::string> append_mended(RegionResult& result, const io::PolygonsFile& file,
+                                         const PolygonProblem& problem, const std::string& name,
+                                         const ConstraintOptions& constraints, const Options& options, bool quiet) {
+  const std::size_t p = problem.polygon;
   const Graph graph = graph_of(file, p);
-  const ConstrainedTriangulation mesh =
-      triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
-  if (mesh.number_inside() == 0) return false;
-  note_rounding(mesh, fmt::format("{}, polygon {}", name, p), quiet);
-  append_inside(result, mesh, static_cast<std::int32_t>(result.points.size()));
+  std::optional<ConstrainedTriangulation> mesh;
+  try {
+    mesh = mend(graph, problem.status, constraints, options);
+  } catch (const OptionError& e) {
+    if (e.option() != "grid") throw;
+    const std::string_view what = e.what();  // "ConstraintOptions::grid: ..."
+    return fmt::format("; --crossing {}", what.substr(what.find(e.option())));
+  } catch (const Error&) {
+    throw Failure(exit_file, fmt::format("{}: {}", name, explain_graph_error(graph.points.view(), graph.segments)));
+  }
+  if (mesh->number_inside() == 0) {
+    const bool crosses = problem.status != PolygonStatus::too_few_points;
+    return constraints.crossing == Crossing::grid && crosses ? "; nothing is inside on the grid" : "";
+  }
+  note_rounding(*mesh, fmt::format("{}, polygon {}", name, p), quiet);
+  append_inside(result, *mesh, static_cast<std::int32_t>(result.points.size()));
   result.region.resize(result.triangles.size() / 3);
-  std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh.number_inside()), result.region.end(),
+  std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh->number_inside()), result.region.end(),
             file.features[p]);
-  const io::PointSet points = points_of(graph, mesh);
+  const io::PointSet points = points_of(graph, *mesh);
   result.points.xy.insert(result.points.xy.end(), points.xy.begin(), points.xy.end());
   result.points.height.insert(result.points.height.end(), points.height.begin(), points.height.end());
-  return true;
+  return std::nullopt;
 }
 
 /// Those that cross, with a rule for that, and the others with a defect, which are named.
@@ -99,12 +128,14 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
   std::size_t count = 0;
   for (const PolygonProblem& problem : polygons.problems()) {
     check_interrupt();
-    if (constraints.crossing != Crossing::error && may_have_inside(problem.status) &&
-        append_crossed(result, file, problem.polygon, name, constraints, options, command.quiet)) {
-      continue;
+    std::string why;
+    if (constraints.crossing != Crossing::error && may_have_inside(problem.status)) {
+      const auto left_out = append_mended(result, file, problem, name, constraints, options, command.quiet);
+      if (!left_out) continue;
+      why = *left_out;
     }
     constexpr std::size_t most_shown = 10;
-    if (++count <= most_shown) text += "\n  " + describe(file, problem);
+    if (++count <= most_shown) text += "\n  " + describe(file, problem) + why;
     if (count == most_shown + 1) text += "\n  ...";
   }
   if (count == 0) return 0;

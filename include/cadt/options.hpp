@@ -139,10 +139,10 @@ struct Options {
   /// For points of the host, and not for batches.
   KeepPoints keep_points = KeepPoints::no;
   /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory.
-  /// Triangulations, batches and polygons say before any work what all of it needs. Queries, verify_on_device,
-  /// Crossing::exact where segments cross, finish_leaf and finish_join keep to the limit step by step:
-  /// OutOfMemory::needed() is that of the first step that did not fit, and later ones may need more. (Earlier results
-  /// of a triangulator that still exist count as well.)
+  /// Triangulations, batches and polygons of at most 512 points say before any work what all of it needs. Segments and
+  /// larger polygons (what their mesh without segments needs is told before any work), queries, verify_on_device,
+  /// finish_leaf and finish_join keep to the limit step by step: OutOfMemory::needed() is that of the first step that
+  /// did not fit, and later ones may need more. (Earlier results of a triangulator that still exist count as well.)
   std::size_t max_memory = 0;
   /// The caller's stream (a cudaStream_t, also a default stream) or in-order queue (a cl_command_queue): all work is
   /// enqueued there, on its device. Requires a named back end. It must outlive the triangulator and its results. Not

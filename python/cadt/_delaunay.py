@@ -41,8 +41,8 @@ class Delaunay(Mesh):
     threads : int, optional
         Threads of the host at most. Default: one for each core.
     max_memory : int, optional
-        Limit of the device's memory in bytes. What needs more is refused: a triangulation before any work, queries
-        at the first step that does not fit.
+        Limit of the device's memory in bytes. What needs more is refused: a triangulation before any work, segments and
+        queries at the first step that does not fit.
     statistics : {"none", "counters", "timing"}
         What `statistics` counts.
     progress : bool or callable, optional

@@ -118,6 +118,13 @@ def test_crossings() -> None:
             cadt.ConstrainedDelaunay(CROSS, segments, crossing=wrong)
 
 
+def test_level_segments_stay_level_at_crossings() -> None:
+    ends = np.random.default_rng(1).random((60, 2))
+    mesh = cadt.ConstrainedDelaunay(ends, np.arange(60).reshape(-1, 2), crossing="exact")
+    assert len(mesh.added_points) > 50
+    assert (mesh.at_crossings(np.full(60, 5.1)) == 5.1).all()
+
+
 def test_values_at_crossings() -> None:
     """A segment that others cross twice, with a given point on it in between."""
     xy = [[0, 0], [8, 0], [4, 0], [2, -1], [2, 1], [6, -1], [6, 1], [9, 9]]

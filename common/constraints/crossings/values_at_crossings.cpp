@@ -62,8 +62,10 @@ std::vector<double> values_at_crossings(PointsView points, std::span<const doubl
         const auto v = static_cast<std::size_t>(chains[i]);
         if (mesh.added_parents()[v - n][0] != static_cast<std::int32_t>(s)) continue;
         const double part = part_along(place(from), place(to), place(v));
-        for (std::size_t j = 0; j < columns; ++j)
-          result[v * columns + j] = (1 - part) * values[from * columns + j] + part * values[to * columns + j];
+        for (std::size_t j = 0; j < columns; ++j) {
+          const double a = values[from * columns + j], b = values[to * columns + j];
+          result[v * columns + j] = a == b ? a : (1 - part) * a + part * b;  // rounding leaves what is level so
+        }
       }
       before = behind;
     }

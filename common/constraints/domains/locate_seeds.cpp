@@ -6,21 +6,19 @@
 #include <string>
 
 #include "common/constraints/domains/domains.hpp"
+#include "common/constraints/domains/seed_buckets.hpp"
 #include "common/constraints/exact/crossing_places.hpp"
 #include "common/verify/host/exact_sign.hpp"
 
 namespace cadt {
 namespace {
 
-struct Seed {
-  verifier::Point at;
-  std::int32_t* triangle;
-};
+using Place = SeedBuckets::Place;
 
-void add_seed(std::vector<Seed>& seeds, const char* option, std::size_t i, double x, double y, std::int32_t& triangle) {
+void add_seed(std::vector<Place>& seeds, const char* option, std::size_t i, double x, double y) {
   if (!std::isfinite(x) || !std::isfinite(y))
     throw OptionError(option, "place " + std::to_string(i) + " is not finite: give two numbers", "ConstraintOptions::");
-  seeds.push_back({{x, y}, &triangle});
+  seeds.push_back({x, y});
 }
 
 bool contains_exactly(const constraints::CrossingPlaces& vertices, std::span<const std::int32_t> triangle,
@@ -42,12 +40,11 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
   if (options.domain != Domain::seeds) return found;
   found.holes.assign(options.holes.size(), -1);
   found.regions.assign(options.regions.size(), -1);
-  std::vector<Seed> seeds;
+  std::vector<Place> seeds;
   for (std::size_t i = 0; i < options.holes.size(); ++i)
-    add_seed(seeds, "holes", i, options.holes[i][0], options.holes[i][1], found.holes[i]);
+    add_seed(seeds, "holes", i, options.holes[i][0], options.holes[i][1]);
   for (std::size_t i = 0; i < options.regions.size(); ++i)
-    add_seed(seeds, "regions", i, options.regions[i].x, options.regions[i].y, found.regions[i]);
-  std::ranges::sort(seeds, {}, [](const Seed& seed) { return seed.at.x; });
+    add_seed(seeds, "regions", i, options.regions[i].x, options.regions[i].y);
   if (seeds.empty()) return found;
   verifier::require_ieee_arithmetic();
 
@@ -58,22 +55,23 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
     return {added.xy[2 * (i - points.size())], added.xy[2 * (i - points.size()) + 1]};
   };
   const constraints::CrossingPlaces crossings{points, added.segments, added.pairs};
+  const SeedBuckets buckets(seeds);
   // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
   for (std::size_t t = 0; t < triangles.size() / 3; ++t) {
     const std::array<verifier::Point, 3> p = {point(triangles[3 * t]), point(triangles[3 * t + 1]),
                                               point(triangles[3 * t + 2])};
     const auto [min_x, max_x] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [min_y, max_y] = std::minmax({p[0].y, p[1].y, p[2].y});
-    for (auto seed = std::ranges::lower_bound(seeds, min_x, {}, [](const Seed& s) { return s.at.x; });
-         seed != seeds.end() && seed->at.x <= max_x; ++seed) {
-      const verifier::Point q = seed->at;
-      if (*seed->triangle >= 0 || q.y < min_y || q.y > max_y) continue;
+    buckets.each_in({min_x, min_y}, {max_x, max_y}, [&](std::size_t i) {
+      std::int32_t& triangle = i < found.holes.size() ? found.holes[i] : found.regions[i - found.holes.size()];
+      if (triangle >= 0) return;
+      const verifier::Point q = {seeds[i][0], seeds[i][1]};
       const bool has_crossing = !added.pairs.empty() && std::ranges::any_of(triangles.subspan(3 * t, 3), is_added);
       if (has_crossing ? contains_exactly(crossings, triangles.subspan(3 * t, 3), q)
                        : verifier::orientation(p[0], p[1], q) >= 0 && verifier::orientation(p[1], p[2], q) >= 0 &&
                              verifier::orientation(p[2], p[0], q) >= 0)
-        *seed->triangle = static_cast<std::int32_t>(t);
-    }
+        triangle = static_cast<std::int32_t>(t);
+    });
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <random>
 
 namespace cadt::constraints {
 namespace {
@@ -50,11 +51,21 @@ std::vector<std::int32_t> insertion_order(const Arrangement& in) {
   return order;
 }
 
-MeshEditor edit(const Arrangement& in, const Triangulation& delaunay) {
+/// A random order, the same in each run: edges that are next to each other, such as the spokes of a wheel, would all
+/// cross the same triangles one after the other; so each has those between its neighbours alone.
+std::vector<std::size_t> order_of_walls(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937 random(1);
+  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
+
+MeshEditor edit(const Arrangement& in, const Triangulation& delaunay, const StopCheck& check_stop) {
   const auto triangles = delaunay.triangles(), neighbors = delaunay.neighbors();
   std::vector<std::int32_t> ranks(triangles.size());
   for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = in.rank[static_cast<std::size_t>(triangles[i])];
-  return MeshEditor(in, std::move(ranks), {neighbors.begin(), neighbors.end()});
+  return MeshEditor(in, std::move(ranks), {neighbors.begin(), neighbors.end()}, check_stop);
 }
 
 }  // namespace
@@ -63,13 +74,12 @@ ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment>
                                      const Triangulation& delaunay, unsigned threads, const StopCheck& check_stop) {
   const Arrangement in = arrange(points, segments, threads, check_stop);
   const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
-  MeshEditor mesh = edit(in, delaunay);
+  MeshEditor mesh = edit(in, delaunay, check_stop);
   for (const std::int32_t c : insertion_order(in)) {
     check_stop();
     mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
   }
-  for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size() && !mesh.triangles().empty(); ++wall) {
-    check_stop();
+  for (const std::size_t wall : order_of_walls(mesh.triangles().empty() ? 0 : in.chain_offsets.size() - 1)) {
     mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
                                 in.chain_vertices.data() + in.chain_offsets[wall + 1]));
   }

@@ -8,8 +8,12 @@ namespace cadt::constraints {
 using exact::Place;
 
 MeshEditor::MeshEditor(const Arrangement& arrangement, std::vector<std::int32_t> triangles,
-                       std::vector<std::int32_t> neighbors)
-    : in_(arrangement), exact_(arrangement.lines), vertices_(std::move(triangles)), neighbors_(std::move(neighbors)) {
+                       std::vector<std::int32_t> neighbors, const StopCheck& check_stop)
+    : in_(arrangement),
+      check_stop_(check_stop),
+      exact_(arrangement.lines),
+      vertices_(std::move(triangles)),
+      neighbors_(std::move(neighbors)) {
   const std::size_t vertices = in_.points.size() + in_.crossings.size();
   const std::size_t most =
       vertices_.size() + 6 * in_.crossings.size();  // each vertex inside the hull makes two triangles

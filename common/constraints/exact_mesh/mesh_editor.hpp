@@ -4,6 +4,7 @@
 #pragma once
 
 #include "common/constraints/crossings/arrangement.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <array>
 #include <cstdint>
@@ -16,8 +17,9 @@ namespace cadt::constraints {
 class MeshEditor {
  public:
   /// A Delaunay triangulation of all points of the arrangement, with its vertices. The arrangement must outlive this
-  /// object.
-  MeshEditor(const Arrangement& arrangement, std::vector<std::int32_t> triangles, std::vector<std::int32_t> neighbors);
+  /// object. `check_stop` ends the insertion of a chain.
+  MeshEditor(const Arrangement& arrangement, std::vector<std::int32_t> triangles, std::vector<std::int32_t> neighbors,
+             const StopCheck& check_stop = {});
 
   /// Inserts a vertex into the Delaunay triangulation: the triangle that it is in is divided, then edges are flipped
   /// (C. L. Lawson, "Software for C1 surface interpolation", 1977). The search begins where the last one ended. \pre
@@ -79,6 +81,7 @@ class MeshEditor {
   void join_slits();
 
   const Arrangement& in_;
+  StopCheck check_stop_;
   exact::ImplicitPoints exact_;
   std::vector<std::int32_t> vertices_, neighbors_, triangle_of_;
   std::vector<std::uint8_t> flags_;

@@ -7,6 +7,11 @@
 #include <algorithm>
 
 namespace cadt::constraints {
+namespace {
+
+constexpr std::int32_t long_range = 1024;  // vertices whose tests take longer than a look at the clock
+
+}  // namespace
 
 /// The triangles around a vertex, one after the other: counterclockwise up to the hull, then clockwise.
 struct MeshEditor::Fan {
@@ -48,6 +53,7 @@ bool MeshEditor::step(Fan& fan, std::int32_t target, Edge& found, bool& crosses)
 }
 
 void MeshEditor::insert_edge(std::int32_t u, std::int32_t w) {
+  check_stop_();
   const std::int32_t at_u = triangle_of_[static_cast<std::size_t>(u)], at_w = triangle_of_[static_cast<std::size_t>(w)];
   Fan from_u{u, at_u, at_u}, from_w{w, at_w, at_w};
   Edge edge{};
@@ -147,6 +153,7 @@ std::int32_t MeshEditor::fill(const Side& side) {
         neighbor(t, k) = parent.triangle;
       continue;
     }
+    if (high - low > long_range) check_stop_();
     std::int32_t best = low + 1;  // the one whose circle with the ends has no other inside
     for (std::int32_t i = low + 2; i < high; ++i) {
       if (exact_.incircle_perturbed(in_.place(at(low)), in_.place(at(high)), in_.place(at(best)), in_.place(at(i))) > 0)

@@ -7,11 +7,11 @@
 #include "common/platform/parallel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <string>
 
 namespace cadt::constraints {
@@ -24,11 +24,10 @@ std::uint64_t odd_part(double v) {
   return mantissa >> std::countr_zero(mantissa);
 }
 
+/// The shortest that reads back as the same number.
 std::string text(double v) {
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out << v;
-  return out.str();
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), v).ptr};
 }
 
 [[noreturn]] void refuse(const std::string& message) { throw OptionError("grid", message, "ConstraintOptions::"); }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/constraints/polygons/first_edges.hpp"
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/counters.hpp"
@@ -271,6 +272,13 @@ class PolygonsCall {
     return false;
   }
 
+  void add_crossed(std::size_t p, std::span<const std::int64_t> rings, const Segment& pair) {
+    const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
+    const auto begin = static_cast<std::int32_t>(in_.first_point(p));
+    add(p, ring_of(pair[0]) == ring_of(pair[1]) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing,
+        pair[0] + begin, pair[1] + begin, 0);
+  }
+
   void add_alone(std::size_t p) {
     if (refuse(p)) return;
     const std::size_t begin = in_.first_point(p), count = in_.points_of(p, p + 1);
@@ -278,6 +286,8 @@ class PolygonsCall {
     for (std::size_t r = in_.first_ring(p); r <= in_.first_ring(p + 1); ++r)
       rings.push_back(in_.rings[r] - static_cast<std::int64_t>(begin));
     const std::vector<Segment> segments = ring_segments(rings);
+    const PointsView points = in_.points.subview(begin, count);
+    if (const auto pair = crossing_of_first_edges(points, segments)) return add_crossed(p, rings, *pair);
     ConstraintOptions constraints;
     constraints.domain = Domain::even_odd;
     Options options = ctx_.options;
@@ -287,8 +297,7 @@ class PolygonsCall {
     const std::size_t limit = options.max_memory, taken = ctx_.memory.taken();
     if (limit != 0) options.max_memory = limit > taken ? limit - taken : 1;
     try {
-      const ConstrainedTriangulation mesh =
-          triangulate_constrained(in_.points.subview(begin, count), segments, constraints, options);
+      const ConstrainedTriangulation mesh = triangulate_constrained(points, segments, constraints, options);
       const std::vector<std::int32_t> inside = mesh.triangles_inside();
       add_counters(alone_, mesh.statistics());
       alone_.bytes_device_peak = std::max(alone_.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
@@ -297,10 +306,7 @@ class PolygonsCall {
       const auto at = static_cast<std::int32_t>(begin);
       add(p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, inside.size() / 3);
     } catch (const CrossingError& error) {
-      const auto [i, j] = error.pairs().front();
-      const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
-      add(p, ring_of(i) == ring_of(j) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing,
-          i + static_cast<std::int32_t>(begin), j + static_cast<std::int32_t>(begin), 0);
+      add_crossed(p, rings, error.pairs().front());
     } catch (const OutOfMemory& error) {
       if (limit != 0) ctx_.memory.require(error.needed());  // says what all need together
       throw;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verification of seeds: the triangles that they lie in, whose corners are crossings where these are exactly.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "common/constraints/domains/seed_buckets.hpp"
 #include "common/constraints/exact/exact_number.hpp"
 #include "common/constraints/verify/verify_checks.hpp"
 
@@ -76,17 +78,23 @@ bool SeedTriangles::contains(std::size_t t, const Place& seed) const {
 
 std::vector<std::int32_t> SeedTriangles::of(std::span<const Place> seeds) const {
   std::vector<std::int32_t> found(seeds.size(), -1);
-  std::vector<std::size_t> order(seeds.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto x_of = [&](std::size_t i) { return seeds[i][0]; };
-  std::ranges::sort(order, {}, x_of);
+  std::vector<Place> finite;
+  std::vector<std::size_t> number;  // of each of these
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (!std::isfinite(seeds[i][0]) || !std::isfinite(seeds[i][1])) continue;
+    finite.push_back(seeds[i]);
+    number.push_back(i);
+  }
+  const SeedBuckets buckets(finite);
   for (std::size_t t = 0; t < mesh_.mesh().number_of_triangles(); ++t) {
     const auto corners = mesh_.mesh().triangle(t);
+    const Place a = places_.at(corners[0]), b = places_.at(corners[1]), c = places_.at(corners[2]);
     // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
-    const auto [low, high] =
-        std::minmax({places_.at(corners[0])[0], places_.at(corners[1])[0], places_.at(corners[2])[0]});
-    for (auto i = std::ranges::lower_bound(order, low, {}, x_of); i != order.end() && x_of(*i) <= high; ++i)
-      if (found[*i] < 0 && contains(t, seeds[*i])) found[*i] = static_cast<std::int32_t>(t);
+    buckets.each_in({std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
+                    {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}, [&](std::size_t i) {
+                      if (found[number[i]] < 0 && contains(t, finite[i]))
+                        found[number[i]] = static_cast<std::int32_t>(t);
+                    });
   }
   return found;
 }

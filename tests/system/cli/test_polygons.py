@@ -90,6 +90,29 @@ class Polygons(CliTest):
         self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16)
 
+    def test_a_grid_moves_those_that_cross_alone(self):
+        dot = [[1, 1]]
+        self.write("a.geojson", geojson(polygon(SQUARE, dot), polygon(BOW_TIE, dot)))
+        self.assertEqual(self.cadt("polygons", "a.geojson", "--crossing", "grid=3", "-o", "m.off", "-q").err, "")
+        points, triangles = self.off("m.off")
+        square = [t for t in triangles if all(points[v][0] in (0, 1, 4) for v in t)]
+        self.assertEqual(area_of(points, square) / 2, 16)
+        others = [v for t in triangles if t not in square for v in t]
+        self.assertTrue(others)
+        for v in others:
+            self.assertTrue(points[v][0] % 3 == 0 and points[v][1] % 3 == 0, points[v])
+
+    def test_those_that_do_not_suit_the_grid_are_named(self):
+        far = [[1e20 * x, 1e20 * y] for x, y in BOW_TIE]
+        self.write("a.geojson", geojson(polygon(SQUARE), polygon(far), polygon(BOW_TIE)))
+        err = self.cadt("polygons", "a.geojson", "--crossing", "grid=0.5", "-o", "m.off").err
+        for text in ("1 of 3 polygons has no inside", "polygon 1 of feature 1: self-crossing", "; --crossing grid: coordinates are 2^52"):
+            self.assertIn(text, err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8)
+        self.fails(3, "polygons", "a.geojson", "--crossing", "grid=0.5", "-o", "n.off", "--strict", says="coordinates are 2^52")
+        err = self.cadt("polygons", "a.geojson", "--crossing", "grid=1e300", "-o", "m.off").err
+        self.assertIn("; nothing is inside on the grid", err)
+
     def test_those_without_points_are_named(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(), polygon([]), polygon(SQUARE, []), polygon([], SQUARE)))
         named = ["a.geojson: 4 of 5 polygons have no inside"] + [

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -238,6 +239,56 @@ TEST(ExactCrossingsOfAdversaries, AHubThatSegmentsPass) {
   }
   const ExactMesh mesh = mesh_of(set);
   EXPECT_EQ(constrained(mesh).size(), 200000U);
+}
+
+/// Ends a call that takes longer than it should.
+class Deadline {
+ public:
+  explicit Deadline(double seconds) {
+    options_.stop = source_.get_token();
+    options_.progress = [this, seconds, begin = std::chrono::steady_clock::now()](const Progress&) {
+      ++told;
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds)
+        source_.request_stop();
+    };
+  }
+  [[nodiscard]] constraints::StopCheck check() const { return constraints::StopCheck(options_, 0); }
+  std::size_t told = 0;
+
+ private:
+  cadt::stop_source source_;
+  Options options_;
+};
+
+/// Spokes of a wheel that a square crosses. Inserted one beside the other, each would cross the edges behind all that
+/// are still to come: minutes for these.
+TEST(ExactCrossingsOfAdversaries, SpokesOfAWheel) {
+  constexpr std::int32_t spokes = 16000;
+  SegmentSet set{"", {}, {}};
+  for (std::int32_t i = 0; i < spokes; ++i) {
+    const double angle = 6.28318530717958648 * (i + 0.123) / spokes;
+    set.xy.insert(set.xy.end(), {std::cos(angle), std::sin(angle)});
+    set.segments.push_back({i, spokes});
+  }
+  set.xy.insert(set.xy.end(), {0, 0, -0.3, -0.3, 0.3, -0.3, 0.3, 0.3, -0.3, 0.3});
+  for (std::int32_t k = 0; k < 4; ++k) set.segments.push_back({spokes + 1 + k, spokes + 1 + (k + 1) % 4});
+  const Deadline deadline(30);
+  const ExactMesh mesh =
+      constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
+  EXPECT_EQ(mesh.parents.size(), static_cast<std::size_t>(spokes));
+  EXPECT_EQ(constrained(mesh).size(), static_cast<std::size_t>(3 * spokes + 4));
+}
+
+/// Along one edge between two rows all triangles have their apex next to an end, which takes quadratic time.
+TEST(ExactCrossingsOfAdversaries, AnEdgeBetweenTwoRowsIsStopped) {
+  constexpr std::int32_t count = 48000;
+  SegmentSet set{"", {-1, 0.5, count, 0.5}, {{0, 1}}};
+  for (std::int32_t i = 0; i < count; ++i) set.xy.insert(set.xy.end(), {1.0 * i, 0, 1.0 * i, 1});
+  const Deadline deadline(0.5);
+  EXPECT_THROW(
+      (void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check()),
+      Cancelled);
+  EXPECT_GE(deadline.told, 3U);
 }
 
 TEST(ExactCrossings, AreStoppedByTheCallerWhoHearsOfThem) {

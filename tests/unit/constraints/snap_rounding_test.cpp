@@ -234,5 +234,21 @@ TEST(SnapRounding, RefusesGrids) {
   for (const double grid : {0x1p-21, 3.0, 1.5, 100.1}) EXPECT_FALSE(refused(grid)) << grid;
 }
 
+TEST(SnapRounding, TakesTheWidthThatAnErrorNames) {
+  const std::vector<double> xy = {0, 0, 0x1p27, 1};
+  for (const double grid : {1e-3, 1e-4, 1e-5, 3e-7}) {
+    try {
+      (void)snap_segments(xy, {}, grid, 1);
+      ADD_FAILURE() << grid;
+    } catch (const OptionError& error) {
+      const std::string what = error.what(), before = "such as ";
+      const double named = std::stod(what.substr(what.find(before) + before.size()));
+      EXPECT_GE(named, grid);
+      EXPECT_LT(named, 2 * grid);
+      EXPECT_NO_THROW((void)snap_segments(xy, {}, named, 1)) << what;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cadt::test

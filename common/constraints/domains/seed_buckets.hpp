@@ -50,7 +50,8 @@ class SeedBuckets {
   }
 
  private:
-  /// The column (k = 0) or row of a coordinate; it does not descend where the coordinate ascends. Halves do not overflow.
+  /// The column (k = 0) or row of a coordinate; it does not descend where the coordinate ascends. Halves do not
+  /// overflow.
   [[nodiscard]] std::size_t cell(std::size_t k, double v) const {
     const double width = high_[k] / 2 - low_[k] / 2, from = std::clamp(v, low_[k], high_[k]) / 2 - low_[k] / 2;
     if (!(width > 0)) return 0;

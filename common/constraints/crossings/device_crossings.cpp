@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <tuple>
 #include <utility>
 
@@ -92,22 +93,29 @@ class CrossingFinder {
 
   bool divide(Listed& lists) {
     const std::size_t all = in_.mesh.all;
-    const LaunchGrid each = launch_.grid_of_long(in_.count);
     launch_.run<KernelId::cadt_vertex_triangles>(in_.mesh.vertices, launch_.grid(all), in_.vertex_triangle);
     divided_.begins = words_for(in_.count + 1);
     lists.ends = ctx_.memory.allocate_zeros(all * word);
-    const auto run = [&] {
-      launch_.run<KernelId::cadt_divide_segments>(mesh(), in_.ends, each, divided_, lists, words_);
+    const auto run = [&](const Allocation& ends, std::size_t count) {
+      launch_.run<KernelId::cadt_divide_segments>(mesh(), ends, launch_.grid_of_long(count), divided_, lists, words_);
     };
-    run();
+    const std::uint64_t most = most_listed * (in_.vertices + in_.count);
+    if (in_.count >= least_sampled) {  // where all run through very many triangles, a few tell it
+      const Allocation shuffled = words_for(2 * in_.count);
+      launch_.run<KernelId::cadt_shuffle_pairs>(in_.ends, launch_.grid(in_.count),
+                                                static_cast<std::uint32_t>(std::bit_width(in_.count)), shuffled);
+      run(shuffled, in_.count / 64);
+      if (wide_word(ctx_.device.read_values(*words_, CADT_PAIRS_WORDS), CADT_PAIRS_LISTED_LOW) > most) return false;
+      ctx_.device.fill(*words_, 0, CADT_PAIRS_WORDS * word, 0);
+      ctx_.device.fill(*lists.ends, 0, all * word, 0);
+    }
+    run(in_.ends, in_.count);
     launch_.run<KernelId::cadt_count_pairs>(lists.ends, launch_.grid_strided(all), words_);
     const auto found = ctx_.device.read_values(*words_, CADT_PAIRS_WORDS);
     if (found[CADT_PAIRS_BROKEN] != 0) give_up("the mesh is wrong at ", found[CADT_PAIRS_BROKEN], " segments");
     const std::uint64_t listed = wide_word(found, CADT_PAIRS_LISTED_LOW),
                         tests = wide_word(found, CADT_PAIRS_TESTS_LOW);
-    if (listed > most_listed * (in_.vertices + in_.count) || tests > most_tests * (listed + few) ||
-        std::max(listed, tests) >= most_of_all)
-      return false;
+    if (listed > most || tests > most_tests * (listed + few) || std::max(listed, tests) >= most_of_all) return false;
     listed_ = static_cast<std::size_t>(listed);
     tests_ = static_cast<std::size_t>(tests);
     launch_.scan(divided_.begins, in_.count + 1);
@@ -117,7 +125,7 @@ class CrossingFinder {
     divided_.segments = words_for(pieces_);
     lists.pieces = words_for(listed_);
     lists.triangles = words_for(listed_);
-    run();
+    run(in_.ends, in_.count);
     return true;
   }
 
@@ -191,6 +199,7 @@ class CrossingFinder {
   /// Places of pieces in triangles for each vertex and segment, pairs in the same triangle for each of those places,
   /// and what is always little enough.
   static constexpr std::uint64_t most_listed = 16, most_tests = 16, few = 1 << 16;
+  static constexpr std::size_t least_sampled = 4096;  // segments
   /// Of what is numbered by words, two of them each.
   static constexpr std::uint64_t most_of_all = std::uint64_t{1} << 30;
 

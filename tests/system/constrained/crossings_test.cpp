@@ -114,6 +114,21 @@ TEST_P(Crossings, RandomSegments) {
   }
 }
 
+/// So many that some of them are looked at first: they need not be left to the sweep, or, as spokes that a square
+/// crosses, they are.
+TEST_P(Crossings, ManySegments) {
+  const SegmentSet set = random_segments(13, 5000, 0.02);
+  expect_pairs(set);
+  EXPECT_EQ(check(set), has_doubles());
+  SegmentSet wheel{"wheel", {0, 0, -0.3, -0.3, 0.3, -0.3, 0.3, 0.3, -0.3, 0.3}, {{1, 2}, {2, 3}, {3, 4}, {4, 1}}};
+  for (std::int32_t i = 0; i < 6000; ++i) {
+    const double angle = 6.28318530717958648 * (i + 0.123) / 6000;
+    wheel.xy.insert(wheel.xy.end(), {std::cos(angle), std::sin(angle)});
+    wheel.segments.push_back({0, 5 + i});
+  }
+  expect_pairs(wheel);
+}
+
 /// Crossings with the same x come in the order of y, upwards or downwards.
 TEST_P(Crossings, OnVerticalSegments) {
   for (const double down : {-1.0, 1.0}) {

@@ -138,7 +138,8 @@ def _several_heights(lines: Breaklines, z: NDArray[np.float64], first_of: NDArra
     a, b = _feature_of(lines, pair)
     who = f"feature {a} (counted from 0) has" if a == b else f"the features {a} and {b} (counted from 0) have"
     (x, y), (one, other) = lines.xyz[pair[0], :2], z[pair]
-    more = f", and so it is with {len(differ) - 1} more points" if len(differ) > 1 else ""
+    others = len(np.unique(first[differ])) - 1  # a ring ends at the place where it began
+    more = f", and so it is at {others} more place{'s' if others > 1 else ''}" if others else ""
     return f"{who} the heights {one:.12g} and {other:.12g} at {x:.12g} {y:.12g}{more}; the first in the file counts"
 
 

@@ -101,7 +101,7 @@ def test_several_heights_at_a_place(las, tmp_path, cadt_terrain):
     at = "500060 5400020"
     err, height = run(west, east)
     assert f"warning: lakes.geojson: the features 0 and 1 (counted from 0) have the heights 5 and 7 at {at}" in err
-    assert "and so it is with 2 more points; the first in the file counts" in err  # a ring ends where it began
+    assert "and so it is at 1 more place; the first in the file counts" in err  # a ring ends where it began
     assert height == 5
     err, height = run(east, west)
     assert "have the heights 7 and 5 at" in err and height > 6.9

@@ -161,6 +161,8 @@ class Scanner {
   bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
     const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
     const std::size_t colon = what.find(": ");
+    constexpr int number_overflow = 406;
+    if (error.id == number_overflow) fail("a number is beyond the largest double");
     fail("is no JSON: " + (colon == std::string::npos ? what : what.substr(colon + 2)));
   }
 
@@ -183,6 +185,7 @@ class Scanner {
     if (skipped_ != 0) return true;
     if (objects_.empty()) fail("is no GeoJSON: it is neither an object nor an array of rings");
     if (depth_ != 0) fail((what == nullptr ? std::string("null") : std::string(what)) + " is where numbers should be");
+    if (what == nullptr && objects_.back().key == "features") fail("a feature is null");
     if (!skips() && what != nullptr) fail("'" + objects_.back().key + "' is " + what);
     return true;
   }

@@ -29,7 +29,8 @@ class MeshEditor {
   /// Makes the edges between consecutive vertices of a wall's chain constrained ones, and the rest Delaunay again: the
   /// triangles that an edge crosses go, and both sides are triangulated anew (M. V. Anglada, "An improved incremental
   /// algorithm for constructing restricted Delaunay triangulations", Computers & Graphics 21, 1997). O(degree of the
-  /// end that has fewer edges + k log k) for k crossed triangles; k^2 in the worst case. \throws InternalError
+  /// end that has fewer edges + k log k) for k crossed triangles; k^2 in the worst case, if a side does not divide well
+  /// and is no mountain (mountain.hpp). \throws InternalError
   void insert_chain(std::span<const std::int32_t> chain);
 
   [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return vertices_; }
@@ -77,7 +78,10 @@ class MeshEditor {
   void constrain(Edge edge);
   void clear_cavity(Edge first, std::int32_t u, std::int32_t w);
   [[nodiscard]] Beyond beyond(std::int32_t t, std::int32_t k);
+  void close(const Side& side, std::int32_t i, Edge edge);
+  [[nodiscard]] std::int32_t take_triangle();
   [[nodiscard]] std::int32_t fill(const Side& side);
+  [[nodiscard]] bool fill_mountain(const Side& side, std::int32_t low, std::int32_t high, Edge parent);
   void join_slits();
 
   const Arrangement& in_;

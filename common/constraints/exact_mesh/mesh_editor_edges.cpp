@@ -2,14 +2,18 @@
 // Constrained edges of the mesh editor.
 #include "common/constraints/exact_mesh/mesh_editor.hpp"
 
+#include "common/constraints/exact_mesh/mountain.hpp"
+
 #include <cadt/errors.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace cadt::constraints {
 namespace {
 
 constexpr std::int32_t long_range = 1024;  // vertices whose tests take longer than a look at the clock
+constexpr std::int32_t usual_work = 40;    // tests for a vertex of a chain that divides well
 
 }  // namespace
 
@@ -129,39 +133,52 @@ void MeshEditor::clear_cavity(Edge first, std::int32_t u, std::int32_t w) {
   right_.beyond.push_back(beyond(t, next(j)));
 }
 
+/// What is beyond an edge of the chain, from vertex `i` on, is across this edge.
+void MeshEditor::close(const Side& side, std::int32_t i, Edge edge) {
+  const Beyond& outer = side.beyond[static_cast<std::size_t>(i)];
+  const std::int32_t from = side.chain[static_cast<std::size_t>(i)], to = side.chain[static_cast<std::size_t>(i) + 1];
+  const auto [t, k] = outer.edge;
+  neighbor(edge.triangle, edge.k) = t;
+  if (outer.constrained) flags_[static_cast<std::size_t>(edge.triangle)] |= static_cast<std::uint8_t>(1U << edge.k);
+  if (t >= 0 && crossed_by_[static_cast<std::size_t>(t)] == edge_)
+    slits_.push_back({std::min(from, to), std::max(from, to), edge});
+  else if (t >= 0)
+    neighbor(t, k) = edge.triangle;
+}
+
+std::int32_t MeshEditor::take_triangle() {
+  const std::int32_t t = free_.back();
+  free_.pop_back();
+  flags_[static_cast<std::size_t>(t)] = 0;
+  return t;
+}
+
 /// Triangulates what is left of the edge from the first vertex of the chain to the last, up to the chain. Returns the
 /// triangle at that edge, which is its edge 2. All vertices of a part of the chain are left of the edge between its
 /// ends: each had an edge that crossed the new one, and these do not cross each other. A vertex from which a slit hangs
 /// comes twice; what hangs there is between its edges that crossed, so inside its circle, and it is not chosen before
-/// that.
+/// that. A chain that does not divide well takes quadratic time, but for a mountain.
 std::int32_t MeshEditor::fill(const Side& side) {
   const auto at = [&](std::int32_t i) { return side.chain[static_cast<std::size_t>(i)]; };
   std::int32_t top = -1;
   ranges_.assign(1, {0, static_cast<std::int32_t>(side.chain.size()) - 1, {-1, -1}});
+  std::int64_t work = std::int64_t{usual_work} * ranges_[0].high;
   while (!ranges_.empty()) {
     const auto [low, high, parent] = ranges_.back();
     ranges_.pop_back();
     if (high == low + 1) {
-      const Beyond& outer = side.beyond[static_cast<std::size_t>(low)];
-      const auto [t, k] = outer.edge;
-      neighbor(parent.triangle, parent.k) = t;
-      if (outer.constrained)
-        flags_[static_cast<std::size_t>(parent.triangle)] |= static_cast<std::uint8_t>(1U << parent.k);
-      if (t >= 0 && crossed_by_[static_cast<std::size_t>(t)] == edge_)
-        slits_.push_back({std::min(at(low), at(high)), std::max(at(low), at(high)), parent});
-      else if (t >= 0)
-        neighbor(t, k) = parent.triangle;
+      close(side, low, parent);
       continue;
     }
     if (high - low > long_range) check_stop_();
+    work -= high - low;
+    if (work < 0 && high - low > long_range && parent.triangle >= 0 && fill_mountain(side, low, high, parent)) continue;
     std::int32_t best = low + 1;  // the one whose circle with the ends has no other inside
     for (std::int32_t i = low + 2; i < high; ++i) {
       if (exact_.incircle_perturbed(in_.place(at(low)), in_.place(at(high)), in_.place(at(best)), in_.place(at(i))) > 0)
         best = i;
     }
-    const std::int32_t t = free_.back();
-    free_.pop_back();
-    flags_[static_cast<std::size_t>(t)] = 0;
+    const std::int32_t t = take_triangle();
     set(t, {at(low), at(high), at(best)}, {-1, -1, parent.triangle});
     if (parent.triangle >= 0)
       neighbor(parent.triangle, parent.k) = t;
@@ -171,6 +188,37 @@ std::int32_t MeshEditor::fill(const Side& side) {
     ranges_.push_back({low, best, {t, 1}});
   }
   return top;
+}
+
+/// The part of the chain from vertex `low` to `high`. False if that is no mountain.
+bool MeshEditor::fill_mountain(const Side& side, std::int32_t low, std::int32_t high, Edge parent) {
+  std::vector<exact::Place> chain;
+  for (std::int32_t i = low; i <= high; ++i) chain.push_back(in_.place(side.chain[static_cast<std::size_t>(i)]));
+  if (!is_mountain(chain)) return false;
+  const MountainMesh mesh = triangulate_mountain(exact_, chain);
+  std::vector<std::int32_t> number(mesh.triangles.size());
+  for (std::int32_t& t : number) t = take_triangle();
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    std::array<std::int32_t, 3> vertices{}, neighbors{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      vertices[k] = side.chain[static_cast<std::size_t>(low + mesh.triangles[i][k])];
+      const std::int32_t other = mesh.neighbors[i][k];
+      neighbors[k] = other < 0 ? -1 : number[static_cast<std::size_t>(other)];
+    }
+    set(number[i], vertices, neighbors);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (mesh.neighbors[i][k] >= 0) continue;
+      const std::int32_t a = mesh.triangles[i][(k + 1) % 3], b = mesh.triangles[i][(k + 2) % 3];
+      const auto edge = static_cast<std::int32_t>(k);
+      if (std::abs(a - b) == 1) {
+        close(side, low + std::min(a, b), {number[i], edge});
+      } else {
+        neighbor(number[i], edge) = parent.triangle;
+        neighbor(parent.triangle, parent.k) = number[i];
+      }
+    }
+  }
+  return true;
 }
 
 void MeshEditor::join_slits() {

@@ -279,11 +279,52 @@ TEST(ExactCrossingsOfAdversaries, SpokesOfAWheel) {
   EXPECT_EQ(constrained(mesh).size(), static_cast<std::size_t>(3 * spokes + 4));
 }
 
-/// Along one edge between two rows all triangles have their apex next to an end, which takes quadratic time.
-TEST(ExactCrossingsOfAdversaries, AnEdgeBetweenTwoRowsIsStopped) {
-  constexpr std::int32_t count = 48000;
+/// Along one edge between two rows all triangles have their apex next to an end. The sides are mountains.
+TEST(ExactCrossingsOfAdversaries, AnEdgeBetweenTwoRows) {
+  constexpr std::int32_t count = 60000;
   SegmentSet set{"", {-1, 0.5, count, 0.5}, {{0, 1}}};
   for (std::int32_t i = 0; i < count; ++i) set.xy.insert(set.xy.end(), {1.0 * i, 0, 1.0 * i, 1});
+  const Deadline deadline(10);
+  const ExactMesh mesh =
+      constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
+  EXPECT_EQ(constrained(mesh), (Edges{{0, 1}}));
+  expect_connected(mesh, "rows");
+}
+
+/// The same in every direction, where rows are not straight, and of crossings.
+TEST(ExactCrossings, MountainsEqualCgal) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> shift(0, 0.3);
+  for (const int kind : {0, 1, 2, 3}) {
+    SegmentSet set{"rows, kind " + std::to_string(kind), {-2, 0.5, 1700, 0.5}, {{0, 1}}};
+    for (std::int32_t i = 0; i < 1700; ++i) {
+      const double x = i, up = 1 + (kind == 1 ? 1e-4 * x * (1700 - x) : kind == 2 ? shift(random) : 0);
+      const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+      if (kind == 3 && i % 3 != 0) continue;
+      if (kind == 3) {
+        set.xy.insert(set.xy.end(), {x, 0, x, 0.8, x + 1, 1.3, x + 1, 0.8 + shift(random), x, 1.3});
+        set.segments.insert(set.segments.end(), {{v + 1, v + 2}, {v + 3, v + 4}});
+      } else {
+        set.xy.insert(set.xy.end(), {x, 1 - up, x, up});
+      }
+    }
+    expect_as_cgal(set);
+    for (std::size_t i = 0; i < set.xy.size(); i += 2) set.xy[i] = -set.xy[i];
+    expect_as_cgal(set);
+    for (std::size_t i = 0; i < set.xy.size(); i += 2) std::swap(set.xy[i], set.xy[i + 1]);
+    expect_as_cgal(set);
+  }
+}
+
+/// Slanted teeth above an edge: its side is no mountain, and takes quadratic time.
+TEST(ExactCrossingsOfAdversaries, AnEdgeBelowSlantedTeethIsStopped) {
+  constexpr std::int32_t count = 40000;
+  SegmentSet set{"", {-10, 0.95, count + 5, 0.95}, {{0, 1}}};
+  for (std::int32_t i = 0; i < count; ++i) {
+    const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+    set.xy.insert(set.xy.end(), {1.0 * i, 1, i - 2.0, 3, i - 0.3, 1.8, i + 0.5, 0.9});
+    set.segments.push_back({v, v + 1});
+  }
   const Deadline deadline(0.5);
   EXPECT_THROW(
       (void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check()),

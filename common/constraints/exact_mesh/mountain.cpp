@@ -16,7 +16,10 @@ class Mountain {
 
   MountainMesh triangulate() {
     cut_ears();
-    legalize();
+    // The chain that is left after all rounds, then with the ears of the last round, and so on: vertices that are
+    // evenly spread flip few edges.
+    auto end = static_cast<std::int32_t>(mesh_.triangles.size());
+    for (std::size_t round = rounds_.size(); round-- > 0; end = rounds_[round]) legalize(rounds_[round], end);
     return std::move(mesh_);
   }
 
@@ -42,44 +45,67 @@ class Mountain {
     if (b.triangle >= 0) neighbors(b.triangle)[static_cast<std::size_t>(b.k)] = a.triangle;
   }
 
-  /// Each convex vertex but the ends of the base is an ear.
+  /// Whether b, between a and c, is convex: an ear, unless it is an end of the base.
+  [[nodiscard]] bool is_ear(const Link& a, const Link& b, const Link& c) const {
+    return exact_.orientation(at(a.vertex), at(c.vertex), at(b.vertex)) > 0;
+  }
+  /// The triangle of an ear; what is then beyond the edge from a to c.
+  Edge cut(const Link& a, const Link& b, const Link& c) {
+    const auto t = static_cast<std::int32_t>(mesh_.triangles.size());
+    mesh_.triangles.push_back({a.vertex, c.vertex, b.vertex});
+    mesh_.neighbors.push_back({-1, -1, -1});
+    join({t, 0}, c.beyond);
+    join({t, 1}, b.beyond);
+    return {t, 2};
+  }
+
+  /// First rounds of ears that are not next to each other; then, where few are left at a time, one after the other.
   void cut_ears() {
-    std::vector<Link> rest;
-    for (std::int32_t v = 0; v < static_cast<std::int32_t>(chain_.size()); ++v) {
-      rest.push_back({v, {-1, -1}});
-      while (rest.size() > 2) {
-        const Link &a = rest[rest.size() - 3], &b = rest[rest.size() - 2], &c = rest[rest.size() - 1];
-        if (exact_.orientation(at(a.vertex), at(c.vertex), at(b.vertex)) <= 0) break;
-        const auto t = static_cast<std::int32_t>(mesh_.triangles.size());
-        mesh_.triangles.push_back({a.vertex, c.vertex, b.vertex});
-        mesh_.neighbors.push_back({-1, -1, -1});
-        join({t, 0}, c.beyond);
-        join({t, 1}, b.beyond);
-        const Link last{c.vertex, {t, 2}};
-        rest.resize(rest.size() - 2);
-        rest.push_back(last);
+    constexpr int most_rounds = 32;
+    std::vector<Link> chain, rest;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(chain_.size()); ++v) chain.push_back({v, {-1, -1}});
+    for (int round = 0; round < most_rounds; ++round) {
+      rounds_.push_back(static_cast<std::int32_t>(mesh_.triangles.size()));
+      rest.assign(1, chain[0]);
+      for (std::size_t i = 1; i < chain.size(); ++i) {
+        if (i + 1 < chain.size() && is_ear(rest.back(), chain[i], chain[i + 1])) {
+          chain[i + 1].beyond = cut(rest.back(), chain[i], chain[i + 1]);
+          ++i;
+        }
+        rest.push_back(chain[i]);
+      }
+      std::swap(chain, rest);
+    }
+    rounds_.push_back(static_cast<std::int32_t>(mesh_.triangles.size()));
+    rest.clear();
+    for (const Link& link : chain) {
+      rest.push_back(link);
+      for (std::size_t n = rest.size(); n > 2 && is_ear(rest[n - 3], rest[n - 2], rest[n - 1]); n = rest.size()) {
+        rest[n - 1].beyond = cut(rest[n - 3], rest[n - 2], rest[n - 1]);
+        rest.erase(rest.end() - 2);
       }
     }
     if (rest.size() != 2) throw InternalError("triangles with crossings of segments: a chain is beyond its base");
   }
 
-  /// All edges, until all are legal.
-  void legalize() {
+  /// All edges between triangles from `first` on, until all are legal; at first those of triangles below `end` may not
+  /// be.
+  void legalize(std::int32_t first, std::int32_t end) {
     std::vector<Edge> suspects;
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangles.size()); ++t) suspects.push_back({t, 2});
+    for (std::int32_t t = first; t < end; ++t) suspects.push_back({t, 2});
     while (!suspects.empty()) {
       const auto [t, k] = suspects.back();
       suspects.pop_back();
       const auto i = static_cast<std::size_t>(k);
       const std::int32_t u = neighbors(t)[i];
-      if (u < 0) continue;
+      if (u < first) continue;  // beyond the chain, or of a round that comes later
       std::size_t j = 0;
       while (neighbors(u)[j] != t) ++j;
       const auto [p, a, b] = std::array{vertices(t)[i], vertices(t)[(i + 1) % 3], vertices(t)[(i + 2) % 3]};
       const std::int32_t q = vertices(u)[j];
       if (exact_.incircle_perturbed(at(p), at(a), at(b), at(q)) <= 0) continue;
-      const std::int32_t bp = neighbors(t)[(i + 1) % 3], pa = neighbors(t)[(i + 2) % 3],
-                         aq = neighbors(u)[(j + 1) % 3], qb = neighbors(u)[(j + 2) % 3];
+      const std::int32_t bp = neighbors(t)[(i + 1) % 3], pa = neighbors(t)[(i + 2) % 3], aq = neighbors(u)[(j + 1) % 3],
+                         qb = neighbors(u)[(j + 2) % 3];
       vertices(t) = {p, a, q};
       neighbors(t) = {aq, u, pa};
       vertices(u) = {p, q, b};
@@ -101,6 +127,7 @@ class Mountain {
   const exact::ImplicitPoints& exact_;
   const std::span<const Place> chain_;
   MountainMesh mesh_;
+  std::vector<std::int32_t> rounds_;  // first triangle of each
 };
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <cadt/errors.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cadt::constraints {
@@ -133,15 +136,33 @@ class Mountain {
 }  // namespace
 
 bool is_mountain(std::span<const Place> chain) {
-  bool x_up = true, x_down = true, y_up = true, y_down = true;
+  using Vector = std::array<double, 2>;
+  const auto edge = [&](std::size_t i) -> Vector {
+    const double x = chain[i].x - chain[i - 1].x, y = chain[i].y - chain[i - 1].y, length = std::abs(x) + std::abs(y);
+    return {x / length, y / length};
+  };
+  const auto cross = [](const Vector& a, const Vector& b) { return a[0] * b[1] - a[1] * b[0]; };
+  Vector left = edge(1), right = left;  // those that turn furthest
+  double most = 0, shortest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < chain.size(); ++i) {
-    const Place &a = chain[i - 1], &b = chain[i];
-    x_up = x_up && a.x < b.x;
-    x_down = x_down && a.x > b.x;
-    y_up = y_up && a.y < b.y;
-    y_down = y_down && a.y > b.y;
+    most = std::max({most, std::abs(chain[i - 1].x), std::abs(chain[i - 1].y)});
+    shortest = std::min(shortest, std::abs(chain[i].x - chain[i - 1].x) + std::abs(chain[i].y - chain[i - 1].y));
+    const Vector e = edge(i);
+    const bool to_left = cross(left, e) > 0, to_right = cross(right, e) < 0;
+    if (to_left && to_right) return false;
+    if (to_left) left = e;
+    if (to_right) right = e;
   }
-  return x_up || x_down || y_up || y_down;
+  if (!(shortest > 1e-9 * most)) return false;  // places are rounded
+  const bool narrow = left[0] * right[0] + left[1] * right[1] > 0;
+  const Vector up =
+      narrow ? Vector{left[0] + right[0], left[1] + right[1]} : Vector{left[1] - right[1], right[0] - left[0]};
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const Vector e = edge(i);
+    const double x = up[0] * e[0], y = up[1] * e[1];
+    if (!(x + y > 1e-5 * (std::abs(x) + std::abs(y)))) return false;
+  }
+  return true;
 }
 
 MountainMesh triangulate_mountain(const exact::ImplicitPoints& exact, std::span<const Place> chain) {

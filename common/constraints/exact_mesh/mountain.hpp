@@ -17,7 +17,7 @@ struct MountainMesh {
   std::vector<std::array<std::int32_t, 3>> triangles, neighbors;
 };
 
-/// Whether the chain ascends or descends all along in x or in y. Rounding keeps the order of exact places.
+/// Whether the chain certainly ascends in one direction all along (segment_mountain.dev.h).
 [[nodiscard]] bool is_mountain(std::span<const exact::Place> chain);
 
 /// The triangulation of the polygon of a chain and its base, left of which all other vertices are, whose edges are

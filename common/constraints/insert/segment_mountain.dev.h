@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * The polygon of a chain that cannot be divided well (segment_cavity.dev.h): the tips of a comb, or points on an arc,
- * have their apex next to an end each time, and looking for it takes quadratic time. If the chain ascends in x or in y
- * all along, its polygon is a monotone mountain, and so is that of any part of its vertices:
+ * have their apex next to an end each time, and looking for it takes quadratic time. If the chain ascends in one
+ * direction all along, its polygon is a monotone mountain, and so is that of any part of its vertices:
  *
  *              . 3 .                  Vertices are inserted in a random order, each beyond the edge between those on
  *         1 . .     . . 4               its sides, here 2 between 1 and 3: first by flips until its triangles have an
@@ -41,19 +41,35 @@ CADT_FN cadt_point cadt_point_at(const cadt_mountain* a, cadt_u32 place) {
   return cadt_load_point(a->m->points + a->rings->vertex[place]);
 }
 
-/* Whether the chain ascends or descends all along in x or in y. */
+/* The edge to a place from the one before, of about unit length. */
+CADT_FN cadt_point cadt_edge_to(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_u32 place) {
+  const cadt_point a = cadt_load_point(m->points + rings->vertex[place - 1u]),
+                   b = cadt_load_point(m->points + rings->vertex[place]);
+  const cadt_real x = b.x - a.x, y = b.y - a.y, length = cadt_fabs(x) + cadt_fabs(y);
+  const cadt_point edge = {x / length, y / length};
+  return edge;
+}
+CADT_FN cadt_real cadt_cross_of(cadt_point a, cadt_point b) { return a.x * b.y - a.y * b.x; }
+
+/* Whether the chain certainly ascends in one direction all along: between the two of its edges that turn furthest to
+ * the left and to the right, if all turn by less than half a circle. */
 CADT_FN cadt_u32 cadt_is_mountain(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c) {
-  cadt_u32 x_up = 1u, x_down = 1u, y_up = 1u, y_down = 1u;
-  cadt_point before = cadt_load_point(m->points + rings->vertex[c->low]);
-  for (cadt_u32 i = c->low + 1u; i <= c->high && (x_up | x_down | y_up | y_down); ++i) {
-    const cadt_point p = cadt_load_point(m->points + rings->vertex[i]);
-    if (!(before.x < p.x)) x_up = 0u;
-    if (!(before.x > p.x)) x_down = 0u;
-    if (!(before.y < p.y)) y_up = 0u;
-    if (!(before.y > p.y)) y_down = 0u;
-    before = p;
+  cadt_point left = cadt_edge_to(m, rings, c->low + 1u), right = left;
+  for (cadt_u32 i = c->low + 2u; i <= c->high; ++i) {
+    const cadt_point edge = cadt_edge_to(m, rings, i);
+    const cadt_real to_left = cadt_cross_of(left, edge), to_right = cadt_cross_of(right, edge);
+    if (to_left > CADT_CAST(cadt_real, 0) && to_right < CADT_CAST(cadt_real, 0)) return 0u;
+    if (to_left > CADT_CAST(cadt_real, 0)) left = edge;
+    if (to_right < CADT_CAST(cadt_real, 0)) right = edge;
   }
-  return x_up | x_down | y_up | y_down;
+  const cadt_u32 narrow = left.x * right.x + left.y * right.y > CADT_CAST(cadt_real, 0) ? 1u : 0u;
+  const cadt_point up = {narrow ? left.x + right.x : left.y - right.y, narrow ? left.y + right.y : right.x - left.x};
+  for (cadt_u32 i = c->low + 1u; i <= c->high; ++i) {
+    const cadt_point edge = cadt_edge_to(m, rings, i);
+    const cadt_real x = up.x * edge.x, y = up.y * edge.y;
+    if (!(x + y > CADT_CAST(cadt_real, 1e-5) * (cadt_fabs(x) + cadt_fabs(y)))) return 0u; /* or NaN */
+  }
+  return 1u;
 }
 
 /* What stands across edge k of triangle t, and there its edge in turn; an edge of the polygon is known by the place

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace cadt::test {
 namespace {
@@ -201,6 +202,25 @@ Drawing loose_ends(int n) {
   return d;
 }
 
+/// Points along the outline of a rectangle, or of a turned ellipse, and one segment across. Its sides turn corners, and
+/// ascend neither in x nor in y all along.
+Drawing outline_across(int n, bool ellipse) {
+  Drawing d;
+  for (int i = 0; i < n; ++i) {
+    const double part = 4.0 * i / n, along = part - std::floor(part);
+    const double corners[5][2] = {{0, 0}, {2, 0}, {2, 1}, {0, 1}, {0, 0}};
+    const auto& from = corners[static_cast<int>(part)];
+    const auto& to = corners[static_cast<int>(part) + 1];
+    const double angle = 2 * std::numbers::pi * i / n, x = 3 * std::cos(angle), y = std::sin(angle);
+    if (ellipse)
+      d.add(0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);
+    else
+      d.add(from[0] + along * (to[0] - from[0]), from[1] + along * (to[1] - from[1]));
+  }
+  d.join(0, n / 2);
+  return d;
+}
+
 }  // namespace
 
 const std::vector<Adversary>& adversaries() {
@@ -221,6 +241,8 @@ const std::vector<Adversary>& adversaries() {
                                              {"slight_arc", [](int n) { return arc(n / 2, 1e-4, 0); }},
                                              {"arc", [](int n) { return arc(n / 2, 0.1, 0); }},
                                              {"jagged_arc", [](int n) { return arc(n / 2, 1e-4, 0.1); }},
+                                             {"rectangle", [](int n) { return outline_across(3 * n, false); }},
+                                             {"turned_ellipse", [](int n) { return outline_across(3 * n, true); }},
                                              {"parabola", [](int n) { return parabola_beside(n / 2); }},
                                              {"loose_ends", [](int n) { return loose_ends(n / 2); }}};
   return all;

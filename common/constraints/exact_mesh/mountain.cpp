@@ -148,10 +148,8 @@ bool is_mountain(std::span<const Place> chain) {
     most = std::max({most, std::abs(chain[i - 1].x), std::abs(chain[i - 1].y)});
     shortest = std::min(shortest, std::abs(chain[i].x - chain[i - 1].x) + std::abs(chain[i].y - chain[i - 1].y));
     const Vector e = edge(i);
-    const bool to_left = cross(left, e) > 0, to_right = cross(right, e) < 0;
-    if (to_left && to_right) return false;
-    if (to_left) left = e;
-    if (to_right) right = e;
+    if (cross(left, e) > 0) left = e;
+    if (cross(right, e) < 0) right = e;
   }
   if (!(shortest > 1e-9 * most)) return false;  // places are rounded
   const bool narrow = left[0] * right[0] + left[1] * right[1] > 0;

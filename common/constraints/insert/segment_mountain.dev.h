@@ -57,10 +57,8 @@ CADT_FN cadt_u32 cadt_is_mountain(const cadt_segment_mesh* m, const cadt_rings* 
   cadt_point left = cadt_edge_to(m, rings, c->low + 1u), right = left;
   for (cadt_u32 i = c->low + 2u; i <= c->high; ++i) {
     const cadt_point edge = cadt_edge_to(m, rings, i);
-    const cadt_real to_left = cadt_cross_of(left, edge), to_right = cadt_cross_of(right, edge);
-    if (to_left > CADT_CAST(cadt_real, 0) && to_right < CADT_CAST(cadt_real, 0)) return 0u;
-    if (to_left > CADT_CAST(cadt_real, 0)) left = edge;
-    if (to_right < CADT_CAST(cadt_real, 0)) right = edge;
+    if (cadt_cross_of(left, edge) > CADT_CAST(cadt_real, 0)) left = edge;
+    if (cadt_cross_of(right, edge) < CADT_CAST(cadt_real, 0)) right = edge;
   }
   const cadt_u32 narrow = left.x * right.x + left.y * right.y > CADT_CAST(cadt_real, 0) ? 1u : 0u;
   const cadt_point up = {narrow ? left.x + right.x : left.y - right.y, narrow ? left.y + right.y : right.x - left.x};

@@ -298,13 +298,16 @@ TEST(ExactCrossingsOfAdversaries, AnEdgeBetweenTwoRows) {
 TEST(ExactCrossings, MountainsEqualCgal) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> shift(0, 0.3);
-  for (const int kind : {0, 1, 2, 3}) {
+  for (const int kind : {0, 1, 2, 3, 4}) {  // the last one, of straight teeth, is none
     SegmentSet set{"rows, kind " + std::to_string(kind), {-2, 0.5, 1700, 0.5}, {{0, 1}}};
     for (std::int32_t i = 0; i < 1700; ++i) {
       const double x = i, up = 1 + (kind == 1 ? 1e-4 * x * (1700 - x) : kind == 2 ? shift(random) : 0);
       const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
       if (kind == 3 && i % 3 != 0) continue;
-      if (kind == 3) {
+      if (kind == 4) {
+        set.xy.insert(set.xy.end(), {x, 0, x, 0.75, x, 1});
+        set.segments.push_back({v + 1, v + 2});
+      } else if (kind == 3) {
         set.xy.insert(set.xy.end(), {x, 0, x, 0.8, x + 1, 1.3, x + 1, 0.8 + shift(random), x, 1.3});
         set.segments.insert(set.segments.end(), {{v + 1, v + 2}, {v + 3, v + 4}});
       } else {

@@ -172,7 +172,10 @@ std::int32_t MeshEditor::fill(const Side& side) {
     }
     if (high - low > long_range) check_stop_();
     work -= high - low;
-    if (work < 0 && high - low > long_range && parent.triangle >= 0 && fill_mountain(side, low, high, parent)) continue;
+    if (work < 0 && high - low > long_range && parent.triangle >= 0) {
+      if (fill_mountain(side, low, high, parent)) continue;
+      work = std::int64_t{usual_work} * (high - low);  // a part may be one, but looking takes as long as an apex
+    }
     std::int32_t best = low + 1;  // the one whose circle with the ends has no other inside
     for (std::int32_t i = low + 2; i < high; ++i) {
       if (exact_.incircle_perturbed(in_.place(at(low)), in_.place(at(high)), in_.place(at(best)), in_.place(at(i))) > 0)

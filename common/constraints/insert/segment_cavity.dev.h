@@ -117,7 +117,8 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
   cadt_u64 work = CADT_CAST(cadt_u64, c.high - c.low) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
   for (;;) {
     const cadt_u32 size = c.high - c.low;
-    if (work < size && size > CADT_CAST(cadt_u32, CADT_MOUNTAIN_SMALL) && cadt_is_mountain(m, rings, &c)) {
+    const cadt_u32 looks = work < size && size > CADT_CAST(cadt_u32, CADT_MOUNTAIN_SMALL) ? 1u : 0u;
+    if (looks && cadt_is_mountain(m, rings, &c)) {
       const cadt_u32 base = cadt_fill_mountain(m, rings, &c, counters);
       if (base == CADT_NONE) {
         cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
@@ -128,6 +129,8 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
       c = stack[--waiting];
       continue;
     }
+    /* A part of what is no mountain may be one, but looking takes as long as an apex. */
+    if (looks) work = CADT_CAST(cadt_u64, size) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
     work = work < size ? 0u : work - size;
     const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, 0u, 1u, counters);
     if (apex == CADT_NONE) {

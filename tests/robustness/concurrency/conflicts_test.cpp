@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -19,7 +20,7 @@ namespace {
 int runs() {
   const char* variable = std::getenv("CADT_CONFLICT_RUNS");
   const int value = variable ? std::atoi(variable) : 0;
-  return value > 0 ? value : 200;
+  return value > 0 ? value : 50;
 }
 
 // All points in a tiny cluster, a second one beside it, and a frame: in each level all threads work on few triangles.
@@ -53,9 +54,14 @@ class Conflicts : public BackendTest {
     std::uint64_t conflicts = 0;
     Options options = GetParam().options();
     options.tuning.strategy = Strategy::locks;
-    // On a busy machine threads may take turns for a while: up to five times as many runs until two have met.
+    options.tuning.grain = 1;  // neighbouring points go to different threads
+    // On a busy machine threads may take turns for a while: then more runs are made, but not for ever.
     const bool needs_conflict = must_conflict && runs_in_parallel();
-    for (int run = 0; run < runs() || (needs_conflict && conflicts == 0 && run < 5 * runs()); ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto missing = [&] {
+      return needs_conflict && conflicts == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(90);
+    };
+    for (int run = 0; run < runs() || missing(); ++run) {
       const Triangulation mesh = triangulate(std::span<const double>(xy), options);
       ASSERT_TRUE(same_mesh(mesh, expected)) << "run " << run;
       const Statistics& s = mesh.statistics();

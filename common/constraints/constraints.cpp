@@ -78,28 +78,30 @@ class Constrainer {
     std::size_t fresh_size = 0;  // how many of them a launch takes
     bool fresh = true;           // whether it took some
     bool tries_few = !ctx_.device.shape().contiguous;
-    const Allocation* pairs = &ends_;
     Allocation left;
+    std::size_t room = 0;  // of left, in pairs
     for (int launch = 0; count != 0; ++launch) {
       const std::size_t first = count - taken;
-      Pieces pieces = find(*pairs, first, taken, launch == 0);
+      Pieces pieces = find(launch == 0 ? ends_ : left, first, taken, launch == 0);
       if (launch == 0) ctx_.statistics.inserted_segments = pieces.count;
-      Allocation others = ctx_.memory.allocate((2 * first + 4 * pieces.count) * word);
-      if (first != 0) launch_.run<KernelId::cadt_copy_words>(*pairs, others, 0U, launch_.grid(2 * first));
+      // What is left of the pairs that were taken, whose ends the pieces have, follows the others.
+      if (const std::size_t wanted = first + 2 * pieces.count; wanted > room) {
+        Allocation larger = ctx_.memory.allocate(2 * (room = wanted) * word);
+        if (first != 0) launch_.run<KernelId::cadt_copy_words>(left, larger, 0U, launch_.grid(2 * first));
+        left = std::move(larger);
+      }
       ctx_.device.fill(*words_, CADT_SEGMENTS_LEFT * word, word, static_cast<std::uint32_t>(first));
-      const std::optional<std::size_t> all = pieces.count == 0 ? first : insert(pieces, others);
+      const std::optional<std::size_t> all = pieces.count == 0 ? first : insert(pieces, left);
       if (!all) return Outcome::crossed;
       const std::size_t waiting = *all - first;
       count = *all;
-      left = launch == 0 ? shuffled(others, count) : std::move(others);
-      pairs = &left;
+      if (launch == 0) left = shuffled(left, room = most = count);
       // Of the first launch, which takes whole segments, pieces alone.
       const std::size_t tried = launch == 0 ? pieces.count : taken;
       // A segment with a vertex on it is two pieces, which meet there.
       if (pieces.count == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
       ctx_.statistics.segment_retries += waiting;
-      if (launch == 0) most = count;
       if (tries_few && count > 1 && count <= CADT_FEW_PIECES) {
         tries_few = false;  // what is left then is long, or nearly so
         if (!insert_few(left, count)) return Outcome::crossed;

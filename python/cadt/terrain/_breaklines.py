@@ -80,10 +80,30 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     return Breaklines(path, xyz, offsets, feature)
 
 
+def leave_out_far(lines: Breaklines, cloud: Cloud, line: ProgressLine) -> Breaklines:
+    """Those whose box meets that of the points. Triangles would fill the space up to others."""
+    counts = np.diff(lines.offsets)
+    some = np.flatnonzero(counts)
+    near = np.zeros(len(counts), bool)
+    if len(some):
+        begins, xy, (x0, y0, x1, y1) = lines.offsets[some], lines.xyz[:, :2], cloud.bounds
+        low, high = np.minimum.reduceat(xy, begins), np.maximum.reduceat(xy, begins)
+        near[some] = ((low <= (x1, y1)) & (high >= (x0, y0))).all(axis=1)
+    far = len(some) - np.count_nonzero(near)
+    if far == 0:
+        return lines
+    said = f"{far} of its {len(some)} lines lie outside of the points' extent and are left out"
+    if far == len(some):
+        said = "none of its lines reaches into the points' extent, all are left out: is its reference system that of the points?"
+    line.warn(f"{lines.path}: {said}")
+    offsets = np.concatenate([[0], np.cumsum(counts[near])])
+    return Breaklines(lines.path, lines.xyz[np.repeat(near, counts)], offsets, lines.feature[near])
+
+
 @dataclasses.dataclass(frozen=True)
 class Broken:
     """Points and breaklines as one mesh; the vertices of the lines come first, in the order of the file: the first height
-    at a place counts, and where a point of the cloud is there too, that of the line."""
+    at a place counts, and where a point of the cloud lies on a line with heights, that of the line."""
 
     mesh: cadt.ConstrainedDelaunay
     z: NDArray[np.float64]
@@ -113,12 +133,14 @@ def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace,
     except cadt.CrossingError as error:
         raise FileError(lines.path, _crossing(lines, error.pairs)) from error
     line.clear()
-    if said := _several_heights(lines, z, mesh.duplicate_of):
-        line.warn(f"{lines.path}: {said}")
+    all_z = np.concatenate([z, cloud.z])
+    for said in (_several_heights(lines, z, mesh.duplicate_of), _heights_on_segments(lines, mesh, all_z)):
+        if said:
+            line.warn(f"{lines.path}: {said}")
     heights = "the points" if len(missing) == len(z) else "the file"
     if 0 < len(missing) < len(z):
         heights = f"the file, but {len(missing)} from the points"
-    return Broken(mesh, np.concatenate([z, cloud.z]), heights)
+    return Broken(mesh, all_z, heights)
 
 
 def _feature_of(lines: Breaklines, points: NDArray[np.integer]) -> NDArray[np.int64]:
@@ -141,6 +163,38 @@ def _several_heights(lines: Breaklines, z: NDArray[np.float64], first_of: NDArra
     others = len(np.unique(first[differ])) - 1  # a ring ends at the place where it began
     more = f", and so it is at {others} more place{'s' if others > 1 else ''}" if others else ""
     return f"{who} the heights {one:.12g} and {other:.12g} at {x:.12g} {y:.12g}{more}; the first in the file counts"
+
+
+def _heights_on_segments(lines: Breaklines, mesh: cadt.ConstrainedDelaunay, z: NDArray[np.float64]) -> str:
+    """Where points of lines lie between the ends of other segments, but not at their height, in words. Points of the
+    cloud that do get that height in `z`, if the file gives it."""
+    offsets, vertices = mesh.chains
+    between = np.ones(len(vertices), bool)
+    some = offsets[1:] > offsets[:-1]
+    between[offsets[:-1][some]] = between[offsets[1:][some] - 1] = False
+    segment = np.repeat(np.arange(len(some)), np.diff(offsets))[between]
+    v, a, b = vertices[between], vertices[offsets[segment]], vertices[offsets[segment + 1] - 1]
+    p = np.asarray(mesh.points)
+    along = p[b] - p[a]
+    height = z[a] + (z[b] - z[a]) * ((p[v] - p[a]) * along).sum(axis=1) / (along**2).sum(axis=1)
+    given = np.isfinite(lines.xyz[:, 2])
+    of_file = given[a] & given[b]
+    n = len(lines.xyz)
+    z[v[(v >= n) & of_file]] = height[(v >= n) & of_file]
+    off = np.abs(z[v] - height)
+    off[(v >= n) | ~(of_file | given[np.minimum(v, n - 1)])] = 0
+    wrong = off > 1e-9 * (np.abs(z[v]) + np.abs(height))
+    if not wrong.any():
+        return ""
+    worst = int(np.argmax(off))
+    point, other = _feature_of(lines, np.array([v[worst], a[worst]]))
+    x, y = p[v[worst]]
+    others = len(np.unique(v[wrong])) - 1
+    more = f"; {others} more place{'s differ' if others > 1 else ' differs'} by less" if others else ""
+    return (
+        f"feature {point} (counted from 0) has the height {z[v[worst]]:.12g} at {x:.12g} {y:.12g}, on a segment of feature "
+        f"{other} with the height {height[worst]:.12g} there{more}; the point keeps its height"
+    )
 
 
 def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:

@@ -145,6 +145,7 @@ class InMemory:
     def _rows_with_breaklines(self, cloud: Cloud, grid: Grid) -> tuple[Iterator[Floats], str]:
         options = self.options
         lines = _breaklines.read_breaklines(options.breaklines, cloud, options.crs)
+        lines = _breaklines.leave_out_far(lines, cloud, self.line)
         broken = _breaklines.add_breaklines(cloud, lines, options, self.line)
         self.said["breaklines"] = f"{len(lines.offsets) - 1}, with {len(lines.xyz)} points; heights of {broken.heights}"
         mesh = broken.mesh

@@ -15,6 +15,7 @@ import shapely
 from cadt.terrain import read_cloud
 
 AT = np.array([500_000.0, 5_400_000.0])
+BOUNDS = "500000,5400000,500160,5400100"
 
 
 def ditch(y: np.ndarray) -> np.ndarray:
@@ -114,6 +115,58 @@ def test_several_heights_at_a_place(las, tmp_path, cadt_terrain):
     assert "feature 0 (counted from 0) has the heights 1 and 2 at 500009 5400009; the first in the file counts" in err
 
 
+def test_heights_of_points_on_segments(las, tmp_path, cadt_terrain):
+    """A point of another line keeps its height, with a warning; one of the cloud gets the line's, if that has heights."""
+    corners = [[0, 0, 0], [100, 0, 0], [0, 100, 0], [100, 100, 0]]
+    las("scan.laz", np.array([*corners, [40, 50, 77]]) + [*AT, 0])
+
+    def line(*places: tuple[float, ...]) -> shapely.LineString:
+        return shapely.LineString([(AT[0] + x, AT[1] + y, *z) for x, y, *z in places])
+
+    def run(*lines: shapely.Geometry) -> tuple[str, np.ndarray]:
+        name = write(tmp_path / "lines.gpkg", lines)
+        err = cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines", name).err
+        with rasterio.open(tmp_path / "dem.tif") as raster:
+            return err, raster.read(1)
+
+    slope = line((0, 50, 0), (100, 50, 10))
+    err, cells = run(slope)
+    assert "warning" not in err
+    assert np.abs(cells[50] - (np.arange(100) + 0.5) / 10).max() < 0.2  # half a cell away
+    assert run(line((0, 50), (100, 50)))[1].max() > 70  # without heights
+    on = line((70, 50, 7), (70, 90, 0))
+    assert "warning" not in run(slope, on)[0]
+    above, beside = line((20, 50, 9), (20, 90, 0)), line((60, 50, 6.5), (60, 10, 0))
+    err, _ = run(slope, above, beside)
+    assert (
+        "warning: lines.gpkg: feature 1 (counted from 0) has the height 9 at 500020 5400050, on a segment of feature 0 with "
+        "the height 2 there; 1 more place differs by less; the point keeps its height" in err
+    )
+    err, _ = run(slope, line((30, 50, 3), (60, 50, 0), (80, 50, 8)))  # along it
+    assert "feature 1 (counted from 0) has the height 0 at 500060 5400050, on a segment of feature 0 with" in err
+
+
+def test_lines_outside_of_the_points(las, tmp_path, cadt_terrain):
+    las("scan.laz", scattered())
+
+    def run(*lines: shapely.Geometry) -> tuple[str, np.ndarray]:
+        name = write(tmp_path / "lines.gpkg", lines)
+        err = cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines", name, "--bounds", BOUNDS).err
+        with rasterio.open(tmp_path / "dem.tif") as raster:
+            return err, raster.read(1)
+
+    away = shapely.LineString(AT + [[150, 0], [150, 90]])
+    err, alone = run(away, bank(40))
+    assert "warning: lines.gpkg: 1 of its 2 lines lie outside of the points' extent and are left out" in err
+    assert "breaklines  1, with 3 points" in err
+    assert np.array_equal(alone, run(bank(40))[1])
+    err, _ = run(away)
+    assert "none of its lines reaches into the points' extent, all are left out: is its reference system" in err
+    assert "breaklines  0, with 0 points" in err
+    err, cells = run(shapely.LineString(AT + [[50, 50], [150, 50]]))
+    assert "warning" not in err and (cells != -9999).sum() > (alone != -9999).sum()
+
+
 def test_what_is_refused(las, tmp_path, cadt_terrain):
     las("scan.laz", scattered())
     across = shapely.LineString([AT + [37, 20], AT + [37, 80]])
@@ -128,7 +181,9 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
         shapely.LineString([[49.89500872902691, 84.7113741735877], [59.69363076835746, 94.60659324428218]]),
     ]
     name = write(tmp_path / "twice.gpkg", twice)
-    err = cadt_terrain(*base, name, code=3, says="features 0 and 1 (counted from 0) cross at ").err
+    np.savetxt(tmp_path / "small.xyz", scattered() - [*AT, 0])
+    small = ("raster", "small.xyz", "dem.tif", "--res", "1", "--crs", "EPSG:25832", "--breaklines")
+    err = cadt_terrain(*small, name, code=3, says="features 0 and 1 (counted from 0) cross at ").err
     x, y = (float(word) for word in err.split("cross at ")[1].split(";")[0].split())
     assert 49 < x < 60 and 84 < y < 95
     high = shapely.LineString([[*AT, 1], [*(AT + [9, 9]), np.inf]])

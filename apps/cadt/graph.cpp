@@ -77,7 +77,7 @@ void append(Graph& graph, Graph&& more, bool same_file, const std::string& name,
   }
   auto& height = graph.points.height;
   if (height.empty() != more.points.height.empty()) {
-    if (!quiet) say(fmt::format("cadt: heights are left out: {} has none\n", height.empty() ? "the input" : name));
+    if (!quiet) note_no_heights(height.empty() ? "the input" : name, !height.empty() && more.some_heights);
     height.clear();
   } else {
     height.insert(height.end(), more.points.height.begin(), more.points.height.end());
@@ -151,8 +151,19 @@ ConstraintOptions constraint_options(const SegmentOptions& options, const Graph&
   return result;
 }
 
+std::string name_of(const InputOptions& input, const SegmentOptions& options) {
+  const std::string points = display_name(input.path, true);
+  if (options.file.empty() || options.file == input.path) return points;
+  return points + " with " + display_name(options.file, true);
+}
+
+void note_no_heights(const std::string& name, bool some) {
+  say(fmt::format("cadt: heights are left out: {} has none{}\n", name, some ? " at some points" : ""));
+}
+
 Graph graph_of(io::SegmentsFile file) {
   Graph graph;
+  graph.some_heights = file.some_heights;
   graph.points.xy = std::move(file.xy);
   if (file.attributes_per_point == 1) graph.points.height = std::move(file.attributes);
   graph.points.format = file.format;
@@ -167,7 +178,9 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
   Graph graph;
   if (is_graph(input)) {
     graph = graph_of(io::read_segments(input.path, lower(input.format)));
+    if (graph.some_heights && !quiet) note_no_heights(display_name(input.path, true), true);
   } else {
+    if (options.file == "-") throw Failure(exit_usage, "--segments: standard input is for IN; name a file");
     require_format(options.file, "", io::segment_read_formats(), "");
     std::error_code code;
     const bool same_file = input.path != "-" && std::filesystem::equivalent(input.path, options.file, code);

@@ -34,8 +34,14 @@ struct Graph {
   std::vector<Segment> segments;
   std::vector<std::array<double, 2>> holes;
   std::vector<Region> regions;
-  std::string crs = {};  ///< reference system of a GeoJSON file
+  std::string crs = {};       ///< reference system of a GeoJSON file
+  bool some_heights = false;  ///< as in io::SegmentsFile
 };
+
+/// The files that points and segments are read from, for messages.
+[[nodiscard]] std::string name_of(const InputOptions& input, const SegmentOptions& options);
+/// A note that heights are left out, since the file has none, or has none at some points.
+void note_no_heights(const std::string& name, bool some);
 
 /// What the library is told, with what the file says of seeds. Throws Failure (usage).
 [[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph = {});

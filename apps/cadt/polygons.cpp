@@ -55,6 +55,13 @@ bool may_have_inside(PolygonStatus status) {
          status == PolygonStatus::too_few_points;
 }
 
+std::int64_t points_of(const io::PolygonsFile& file, std::int64_t p) {
+  const auto ring = [&](std::int64_t polygon) {
+    return static_cast<std::size_t>(file.polygon_offsets[static_cast<std::size_t>(polygon)]);
+  };
+  return file.ring_offsets[ring(p + 1)] - file.ring_offsets[ring(p)];
+}
+
 /// Points and rings of polygon p, alone.
 Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
   const auto first = static_cast<std::ptrdiff_t>(file.polygon_offsets[p]);
@@ -126,6 +133,7 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
   constraints.domain = Domain::even_odd;
   std::string text;
   std::size_t count = 0;
+  bool mendable = false;
   for (const PolygonProblem& problem : polygons.problems()) {
     check_interrupt();
     std::string why;
@@ -134,6 +142,7 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
       if (!left_out) continue;
       why = *left_out;
     }
+    mendable = mendable || (may_have_inside(problem.status) && points_of(file, problem.polygon) >= 3);
     constexpr std::size_t most_shown = 10;
     if (++count <= most_shown) text += "\n  " + describe(file, problem) + why;
     if (count == most_shown + 1) text += "\n  ...";
@@ -144,7 +153,7 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
     say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text,
-                    constraints.crossing == Crossing::error
+                    constraints.crossing == Crossing::error && mendable
                         ? "--crossing exact takes rings that cross, and rings of too few points; "
                         : ""));
   }
@@ -184,6 +193,8 @@ int run(const PolygonsCommand& command) {
   const std::string name = display_name(command.input, true);
   line.step(fmt::format("reading {}", name));
   const io::PolygonsFile file = io::read_polygons(command.input, command.format);
+
+  if (file.some_heights && !command.quiet) note_no_heights(name, true);
 
   Options options = library_options(command.device);
   options.statistics = StatisticsDetail::none;

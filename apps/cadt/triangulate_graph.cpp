@@ -17,7 +17,7 @@ namespace cadt::cli {
 int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   ProgressLine line(options.quiet);
   const Options chosen = library_options(options, line);
-  const std::string name = display_name(options.input.path, true);
+  const std::string name = name_of(options.input, options.segments);
   RunReport report;
   report.outputs = std::move(outputs);
   report.domain = options.segments.domain.empty() ? "hull" : options.segments.domain;

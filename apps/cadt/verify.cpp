@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 
@@ -49,11 +50,15 @@ void check_standard_input(const VerifyCommand& command) {
 }
 
 const char* advice(const VerifyReport& report) {
-  const bool delaunay_alone =
-      std::ranges::all_of(report.checks, [](const Check& check) { return check.passed == (check.name != "delaunay"); });
-  return delaunay_alone ? "a mesh with segments is not Delaunay at them: check it with `cadt triangulate IN --verify`"
-                        : "if many checks fail, see whether both files belong together, and --base, --columns and "
-                          "--project";
+  const auto of_segments = [](const Check& check) {
+    constexpr std::array names = {"delaunay", "boundary", "euler", "hull"};
+    return check.passed || std::ranges::find(names, check.name) != names.end();
+  };
+  return std::ranges::all_of(report.checks, of_segments)
+             ? "a mesh with segments is not Delaunay at them, and that of a domain ends at others than the edges of "
+               "the "
+               "hull: check it with `cadt triangulate IN --verify`"
+             : "if many checks fail, see whether both files belong together, and --base, --columns and --project";
 }
 
 int run(const VerifyCommand& command) {

@@ -26,7 +26,7 @@ void add_subject_options(CLI::App& command, SubjectOptions& options) {
 }
 
 std::string name_of(const SubjectOptions& options) {
-  return options.generate.empty() ? display_name(options.input.path, true) : options.generate;
+  return options.generate.empty() ? name_of(options.input, options.segments) : options.generate;
 }
 
 bool has_segments(const SubjectOptions& options) {

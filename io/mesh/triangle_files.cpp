@@ -6,6 +6,7 @@
 #include "io/support/text_scanner.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace cadt::io::detail {
 namespace {
@@ -55,11 +56,11 @@ EleHeader read_ele_header(TextScanner& scanner) {
   scanner.need_content_line("the header of an .ele file");
   EleHeader header;
   header.triangles = scanner.count("the number of triangles", (scanner.bytes_left() + 1) / shortest_line);
-  if (scanner.words_left() != 0) {
+  if (scanner.has_word()) {
     const std::size_t nodes = scanner.count("the number of nodes a triangle", 6);
     if (nodes != 3) scanner.fail("triangles of " + std::to_string(nodes) + " nodes cannot be read, only those of 3");
   }
-  if (scanner.words_left() != 0) {
+  if (scanner.has_word()) {
     constexpr std::size_t most_attributes = 1000;
     header.attributes = scanner.count("the number of attributes", most_attributes);
   }
@@ -88,7 +89,7 @@ std::vector<std::int32_t> read_neigh_beside(const std::string& path, std::size_t
     scanner.fail("has " + std::to_string(count) + " triangles, the .ele file beside it has " +
                  std::to_string(triangles));
   }
-  if (scanner.words_left() != 0 && scanner.integer("the number of neighbours") != 3) {
+  if (scanner.has_word() && scanner.integer("the number of neighbours") != 3) {
     scanner.fail("a triangle has 3 neighbours");
   }
   scanner.expect_end_of_line();
@@ -158,7 +159,9 @@ namespace cadt::io {
 
 std::optional<int> base_beside(const std::string& path) {
   const std::string node = detail::sibling(path, ".node");
-  if (path == "-" || !detail::system_file::is_readable(node)) return std::nullopt;
+  std::error_code code;
+  if (path == "-" || !std::filesystem::is_regular_file(node, code) || !detail::system_file::is_readable(node))
+    return std::nullopt;
   const detail::InputFile file(node);
   detail::TextScanner scanner(file.name(), file.bytes());
   scanner.need_content_line("the header of a .node file");

@@ -19,10 +19,10 @@ NodeHeader read_header(TextScanner& scanner) {
   constexpr std::size_t shortest_line = 6, most_attributes = 1000;
   NodeHeader header;
   header.points = scanner.count("the number of points", (scanner.bytes_left() + 1) / shortest_line);
-  if (scanner.words_left() != 0) header.dimension = scanner.count("the dimension", 3);
+  if (scanner.has_word()) header.dimension = scanner.count("the dimension", 3);
   if (header.dimension < 2) scanner.fail("the dimension must be 2 or 3");
-  if (scanner.words_left() != 0) header.attributes = scanner.count("the number of attributes", most_attributes);
-  if (scanner.words_left() != 0) header.markers = scanner.count("the number of markers", 1);
+  if (scanner.has_word()) header.attributes = scanner.count("the number of attributes", most_attributes);
+  if (scanner.has_word()) header.markers = scanner.count("the number of markers", 1);
   scanner.expect_end_of_line();
   return header;
 }

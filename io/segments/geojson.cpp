@@ -25,7 +25,8 @@ class ToSegments : public GeoJsonSink {
   [[nodiscard]] SegmentsFile take(std::string crs) {
     SegmentsFile& file = graph_.file();
     file.crs = std::move(crs);
-    if (heights_.size() == graph_.points() && !heights_.empty()) {
+    file.some_heights = file.some_heights && heights_.size() != graph_.points();
+    if (!heights_.empty() && !file.some_heights) {
       file.attributes = std::move(heights_);
       file.attributes_per_point = 1;
     }
@@ -37,6 +38,7 @@ class ToSegments : public GeoJsonSink {
     for (std::size_t i = 0; i < positions.xy.size(); i += 2) {
       static_cast<void>(graph_.add_point(positions.xy[i], positions.xy[i + 1]));
     }
+    graph_.file().some_heights |= positions.some_heights;
     heights_.insert(heights_.end(), positions.z.begin(), positions.z.end());
   }
 
@@ -55,6 +57,7 @@ class ToPolygons : public GeoJsonSink {
     }
     ++file.polygon_offsets.back();
     file.xy.insert(file.xy.end(), positions.xy.begin(), positions.xy.end());
+    file.some_heights |= positions.some_heights;
     file.height.insert(file.height.end(), positions.z.begin(), positions.z.end());
     file.ring_offsets.push_back(static_cast<std::int64_t>(file.xy.size() / 2));
   }
@@ -80,7 +83,8 @@ PolygonsFile read_polygons(const std::string& path, const std::string& format) {
   detail::GeoJsonSummary summary = detail::scan_geojson(file.name(), file.bytes(), sink);
   sink.file.number_of_features = summary.features;
   sink.file.crs = std::move(summary.crs);
-  if (2 * sink.file.height.size() != sink.file.xy.size()) sink.file.height.clear();  // some positions have none
+  sink.file.some_heights = sink.file.some_heights && 2 * sink.file.height.size() != sink.file.xy.size();
+  if (sink.file.some_heights) sink.file.height.clear();
   if (sink.file.size() == 0) throw FileError(file.name(), 0, "has no polygons");
   return std::move(sink.file);
 }

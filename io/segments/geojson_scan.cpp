@@ -56,7 +56,7 @@ struct Coordinates {
   [[nodiscard]] GeoJsonSink::Positions range(std::size_t from, std::size_t to) const {
     const bool heights = z.size() == positions();  // else some positions have none
     return {std::span(xy).subspan(2 * from, 2 * (to - from)),
-            heights ? std::span(z).subspan(from, to - from) : std::span<const double>()};
+            heights ? std::span(z).subspan(from, to - from) : std::span<const double>(), !z.empty()};
   }
 };
 

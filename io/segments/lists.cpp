@@ -106,7 +106,7 @@ SegmentsFile read_obj_lines(const InputFile& file) {
     } else if (keyword == "l") {
       if (scanner.words_left() < 2) scanner.fail("a line needs two vertices");
       std::int64_t from = obj_vertex(scanner, graph.points());
-      while (scanner.words_left() != 0) {
+      while (scanner.has_word()) {
         const std::int64_t to = obj_vertex(scanner, graph.points());
         lines.push_back({from, to, scanner.line_number()});
         from = to;

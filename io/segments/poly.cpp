@@ -39,7 +39,7 @@ SegmentsFile with_nodes(NodeFile nodes) {
 /// "count [markers]", and rows "number a b [marker]". The numbers of rows say nothing, as in Triangle.
 void read_rows(TextScanner& scanner, const char* counted, SegmentsFile& result) {
   const std::size_t count = count_of(scanner, counted);
-  const bool marked = scanner.words_left() != 0 && scanner.count("the number of markers", 1) == 1;
+  const bool marked = scanner.has_word() && scanner.count("the number of markers", 1) == 1;
   scanner.expect_end_of_line();
   result.segments.reserve(count);
   if (marked) result.segment_markers.reserve(count);
@@ -80,7 +80,7 @@ void read_regions(TextScanner& scanner, SegmentsFile& result) {
     scanner.need_content_line("a region");
     const auto [x, y] = read_place(scanner, "the number of a region");
     const double attribute = scanner.number("the attribute");
-    const double area = scanner.words_left() != 0 ? scanner.number("the largest area") : attribute;
+    const double area = scanner.has_word() ? scanner.number("the largest area") : attribute;
     result.regions.push_back({x, y, attribute, area});
     scanner.expect_end_of_line();
   }

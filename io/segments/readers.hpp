@@ -66,7 +66,8 @@ void write_places(AtomicFile& out, std::span<const std::array<double, 2>> holes,
 class GeoJsonSink {
  public:
   struct Positions {
-    std::span<const double> xy, z;
+    std::span<const double> xy, z;  ///< z: empty unless all of the geometry have one
+    bool some_heights = false;      ///< some of the geometry have one
   };
   virtual ~GeoJsonSink() = default;
   virtual void points(Positions positions) = 0;

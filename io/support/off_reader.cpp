@@ -22,11 +22,11 @@ OffReader::OffReader(const InputFile& file) : scanner_(file.name(), file.bytes()
     scanner_.fail("an OFF file starts with 'OFF', not " + quoted(keyword) +
                   " (OFF, COFF, NOFF and STOFF as text can be read, with three coordinates)");
   }
-  if (scanner_.words_left() == 0) scanner_.need_content_line("the numbers of vertices and faces");
+  if (!scanner_.has_word()) scanner_.need_content_line("the numbers of vertices and faces");
   // "0 0 0\n" is the shortest vertex, "0\n" the shortest face; the last line may lack its end.
   vertices_ = scanner_.count("the number of vertices", (scanner_.bytes_left() + 1) / 6);
   faces_ = scanner_.count("the number of faces", (scanner_.bytes_left() + 1) / 2);
-  if (scanner_.words_left() != 0) {
+  if (scanner_.has_word()) {
     static_cast<void>(scanner_.integer("the number of edges"));  // ignored: often wrong
   }
   scanner_.expect_end_of_line();

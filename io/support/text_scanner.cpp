@@ -4,6 +4,7 @@
 #include <cadt/io/errors.hpp>
 
 #include <fast_float/fast_float.h>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -139,6 +140,10 @@ std::size_t TextScanner::words_left() const noexcept {
     inside = !blank;
   }
   return words;
+}
+
+bool TextScanner::has_word() const noexcept {
+  return std::any_of(rest_.begin(), rest_.end(), [](char c) { return !is_blank(c); });
 }
 
 void TextScanner::expect_end_of_line() {

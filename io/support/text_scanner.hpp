@@ -67,8 +67,9 @@ class TextScanner {
   [[nodiscard]] std::int64_t integer(const char* what);
   /// As `integer`, from 0 to `limit`.
   [[nodiscard]] std::size_t count(const char* what, std::size_t limit);
-  /// Number of words left on the line.
+  /// Number of words left on the line: counts them all.
   [[nodiscard]] std::size_t words_left() const noexcept;
+  [[nodiscard]] bool has_word() const noexcept;  ///< left on the line
 
   void expect_end_of_line();
   /// Only blank lines and comments may follow.

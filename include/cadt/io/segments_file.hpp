@@ -27,6 +27,7 @@ struct SegmentsFile {
   std::vector<std::array<double, 2>> holes;
   /// Where a line of .poly has one number, it is both attribute and largest area, as in Triangle.
   std::vector<Region> regions;
+  bool some_heights = false;  ///< GeoJSON: some positions have a height and others none; then there are none here
   bool nodes_beside = false;  ///< the points are those of the .node file beside it
   int base = 0;               ///< the first index in the file: 0 or 1
   std::string crs;     ///< reference system that a GeoJSON file names in "crs", as RFC 7946 no longer does; or empty
@@ -66,6 +67,7 @@ struct SegmentsFile {
 struct PolygonsFile {
   std::vector<double> xy;
   std::vector<double> height;  ///< one a point, if all positions have a third coordinate; or empty
+  bool some_heights = false;   ///< some have one, and others none
   std::vector<std::int64_t> ring_offsets{0};
   std::vector<std::int64_t> polygon_offsets{0};
   std::vector<std::int32_t> features;  ///< one a polygon: the number of its feature in the file, from 0

@@ -90,6 +90,8 @@ def leave_out_far(lines: Breaklines, cloud: Cloud, line: ProgressLine) -> Breakl
         low, high = np.minimum.reduceat(xy, begins), np.maximum.reduceat(xy, begins)
         near[some] = ((low <= (x1, y1)) & (high >= (x0, y0))).all(axis=1)
     far = len(some) - np.count_nonzero(near)
+    if len(some) == 0:
+        line.warn(f"{lines.path}: has no lines")
     if far == 0:
         return lines
     said = f"{far} of its {len(some)} lines lie outside of the points' extent and are left out"

@@ -62,6 +62,11 @@ class Verify(CliTest):
         self.cadt("triangulate", "in.poly", "-o", "s.off", "-q", "--verify")
         self.write("in.xy", "0 0\n4 -1\n8 0\n4 1\n")
         self.assertIn(hint, self.cadt("verify", "in.xy", "s.off", expect=7).err)
+        ring = "0 0\n9 0\n9 9\n0 9\n3 3\n6 3\n6 6\n3 6\n"
+        self.write("hole.txt", "8 8\n" + ring + "0 1\n1 2\n2 3\n3 0\n4 5\n5 6\n6 7\n7 4\n")
+        self.write("ring.xy", ring)
+        self.cadt("triangulate", "ring.xy", "--segments", "hole.txt", "--domain", "even_odd", "-o", "h.off", "-q", "--verify")
+        self.assertIn(hint, self.cadt("verify", "ring.xy", "h.off", expect=7).err)
         self.write("bad.off", off_text([(0, 0), (4, -1), (8, 0), (4, 1)], [(0, 1, 2)]))
         self.assertNotIn(hint, self.cadt("verify", "in.xy", "bad.off", expect=7).err)
 

@@ -128,8 +128,29 @@ class Segments(CliTest):
         self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["7"] * 4)
         self.write("flat.edg", "1\n2 2 5 6\n")
         err = self.cadt("triangulate", "p.xyz", "--segments", "flat.edg", "-o", "m.off").err
-        self.assertIn("cadt: heights are left out: flat.edg has none", err)
+        self.assertIn("cadt: heights are left out: flat.edg has none\n", err)
         self.assertEqual({z for _, _, z in read_off(self.path("m.off").read_text())[0]}, {"0"})
+
+    def test_heights_that_some_positions_lack(self):
+        self.write("p.xyz", "0 0 1\n9 0 2\n9 9 3\n0 9 4\n")
+        for name, text in (("a.json", '{"type":"MultiPoint","coordinates":[[0,0,1],[4,0,2],[4,4]]}'),
+                           ("b.json", '{"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[0,0,1]},'
+                                      '{"type":"LineString","coordinates":[[4,0],[4,4]]}]}')):
+            self.write(name, text)
+            for line in ((name,), ("p.xyz", "--segments", name)):
+                err = self.cadt("triangulate", *line, "-o", "m.off").err
+                self.assertIn(f"cadt: heights are left out: {name} has none at some points\n", err)
+                self.assertEqual({z for _, _, z in read_off(self.path("m.off").read_text())[0]}, {"0"})
+        self.assertNotIn("heights", self.cadt("triangulate", "a.json", "-o", "m.off", "-q").err)
+
+    def test_messages_name_both_files(self):
+        self.write("p.xyz", "0 0 1\n9 0 2\n9 9 3\n0 9 4\n")
+        self.write("x.edg", "2\n1 1 3 3\n1 3 3 1\n")
+        for command in (("triangulate",), ("render", "-o", "m.png")):
+            says = "p.xyz with x.edg: 1 pair of segments crosses"
+            self.fails(3, *command, "p.xyz", "--segments", "x.edg", says=says)
+        self.write("lines.obj", "v 0 0 0\nv 9 9 0\nv 9 0 0\nv 0 9 0\nl 1 2\nl 3 4\n")
+        self.fails(3, "triangulate", "lines.obj", "--segments", "lines.obj", says="error: lines.obj: 1 pair")
 
     def test_points_that_are_the_same_are_taken_once(self):
         self.write("lines.obj", "v 0 0 0\nv 9 0 0\nv 9 9 0\nv 1 5 0\nl 1 3\n")
@@ -240,6 +261,7 @@ class SegmentErrors(CliTest):
         self.fails(2, "triangulate", "p.xy", "--crossing", "exact", says="--crossing is about segments")
         self.fails(2, "triangulate", "plate.poly", "--domain", "inside", says="--domain")
         self.fails(2, "triangulate", "plate.poly", "--segments", "plate.poly", says="has segments of its own")
+        self.fails(2, "triangulate", "p.xy", "--segments", "-", says="--segments: standard input is for IN; name a file")
         self.fails(2, "triangulate", "plate.poly", "--stabilize", "defer", says="--stabilize is for points")
         self.fails(2, "triangulate", "plate.poly", "--columns", "1,2", says="--columns and --project")
         self.fails(2, "triangulate", "plate.poly", "-o", "m.npz", says="unknown suffix '.npz'")

@@ -125,8 +125,24 @@ class Polygons(CliTest):
         err = self.cadt("polygons", "a.geojson", "--crossing", "exact", "-o", "m.off").err
         self.assertIn("2 of 5 polygons have no inside", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 3 * 16)
-        self.write("b.json", "[]")
-        self.assertIn("1 of 1 polygons has no inside", self.cadt("polygons", "b.json", "-o", "m.off").err)
+        self.assertIn("--crossing exact", self.cadt("polygons", "a.geojson").err)
+        for name, text in (("b.json", "[]"), ("c.json", json.dumps(polygon(SQUARE, SQUARE)))):  # which that does not help
+            self.write(name, text)
+            err = self.cadt("polygons", name, "-o", "m.off").err
+            self.assertIn("1 of 1 polygons has no inside", err)
+            self.assertNotIn("--crossing", err)
+
+    def test_heights_that_some_positions_lack_are_left_out_with_a_note(self):
+        high = [[x, y, 1] for x, y in SQUARE]
+        self.write("a.geojson", geojson(polygon(high), polygon(SQUARE)))
+        self.assertIn("cadt: heights are left out: a.geojson has none at some points", self.cadt("polygons", "a.geojson").err)
+        self.assertEqual(self.cadt("polygons", "a.geojson", "-q", "-o", "m.off").err, "")
+        self.write("b.geojson", geojson(polygon([high[0], *SQUARE[1:]])))
+        self.assertIn("b.geojson has none at some points", self.cadt("polygons", "b.geojson").err)
+        dot = {"type": "Point", "coordinates": [0, 0]}  # of which nothing is read
+        for shapes in ((polygon(high), dot), (polygon(SQUARE),)):
+            self.write("c.geojson", geojson(*shapes))
+            self.assertNotIn("heights", self.cadt("polygons", "c.geojson").err)
 
     def test_errors(self):
         self.fails(2, "polygons", "a.json", "--crossing", "round", says="--crossing round:")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """cadt triangulate: what comes out."""
 import json
+import os
 import subprocess
 import unittest
 import zipfile
@@ -110,6 +111,12 @@ class Outputs(CliTest):
         self.cadt("triangulate", "in.xy", "-o", "one.ele", "--base", "1")
         self.assertEqual([[i + 1 for i in row] for row in corners("zero.ele")], corners("one.ele"))
         self.assertEqual(min(map(min, corners("one.ele"))), 1)
+        self.write("two.node", "1 2 0 0\n1 0 0\n")
+        self.cadt("triangulate", "in.xy", "-o", "two.ele")
+        self.assertEqual(corners("two.ele"), corners("one.ele"))
+        os.mkfifo(self.path("pipe.node"))  # which nobody writes
+        self.cadt("triangulate", "in.xy", "-o", "pipe.ele")
+        self.assertEqual(corners("pipe.ele"), corners("zero.ele"))
 
     def test_fast_order_is_another_order_of_the_same_triangles(self):
         meshes = []

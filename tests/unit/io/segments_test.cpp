@@ -4,6 +4,7 @@
 
 #include "tests/unit/io/io_test_support.hpp"
 
+#include <chrono>
 #include <cmath>
 
 namespace cadt::io::test {
@@ -139,6 +140,20 @@ TEST(GeoJson, KeepsTheSignOfZero) {
       read_segments(folder.file("a.json", R"({"type":"LineString","coordinates":[[-0,0],[-0.0,-1]]})"));
   EXPECT_TRUE(std::signbit(line.xy[0]) && std::signbit(line.xy[2]));
   EXPECT_FALSE(std::signbit(line.xy[1]));
+}
+
+TEST(Obj, LongLinesAreReadInLinearTime) {
+  constexpr int n = 300000;
+  std::string text, line = "l";
+  for (int i = 1; i <= n; ++i) {
+    text += "v " + std::to_string(i) + " 0 0\n";
+    line += " " + std::to_string(i);
+  }
+  const Folder folder;
+  const std::string file = folder.file("a.obj", text + line + "\n");
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(read_segments(file).segments.size(), std::size_t{n - 1});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));  // 100 if each vertex counts the rest
 }
 
 TEST(ThirdCoordinates, BecomeTheAttribute) {

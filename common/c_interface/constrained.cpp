@@ -295,7 +295,9 @@ cadt_status cadt_find_crossings(const cadt_points* points, const int32_t* segmen
   return guarded([&] {
     required(count, "count");
     const cadt::PointsView view = points_of(points);
-    const auto found = cadt::find_crossings(view, segments_of(segments, segment_count), threads);
+    cadt::Options options;
+    options.threads = threads;
+    const auto found = cadt::find_crossings(view, segments_of(segments, segment_count), options);
     if (has_room(pairs, capacity, 2 * found.size(), count) && !found.empty())
       std::memcpy(pairs, found.data(), found.size() * sizeof found[0]);
   });

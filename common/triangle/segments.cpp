@@ -154,7 +154,7 @@ std::vector<std::array<std::int32_t, 2>> turning_pairs(std::span<const double> x
 std::vector<Region> regions_last_first(std::span<const Region> regions) {
   for (std::size_t i = 0; i < regions.size(); ++i) {
     if (!std::isfinite(regions[i].x) || !std::isfinite(regions[i].y))
-      throw OptionError("regions", "place " + std::to_string(i) + " is not finite: give two numbers");
+      throw OptionError("regions", "place " + std::to_string(i) + " is not finite: give x and y as finite numbers");
   }
   return {regions.rbegin(), regions.rend()};
 }

@@ -90,7 +90,7 @@ struct Constraints {
 void require_finite(const char* list, const char* of, std::ptrdiff_t i, const double* place) {
   if (std::isfinite(place[0]) && std::isfinite(place[1])) return;
   throw InputError(std::string(list) + ", " + of + " " + std::to_string(i) +
-                       " counted from 0: its place is not finite: give two numbers",
+                       " counted from 0: its place is not finite: give x and y as finite numbers",
                    static_cast<std::size_t>(i));
 }
 

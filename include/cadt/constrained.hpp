@@ -182,11 +182,12 @@ class CADT_API ConstrainedTriangulation {
                                                                         const Options& options = {});
 
 /// All pairs of segments that cross (Crossing), each once with the lower index first, ascending. Exact.
-/// O(n log n + pairs) expected. Thread-safe. `threads`: 0 for all cores. \throws InputError, LimitError if points and
-/// crossings are more than max_points(), Error if the floating-point mode is not IEEE 754
+/// O(n log n + pairs) expected, on the host. Thread-safe. Of `options`, `threads`, `stop` and `progress` count.
+/// \throws InputError, Cancelled, LimitError if points and crossings are more than max_points(), Error if the
+/// floating-point mode is not IEEE 754
 [[nodiscard]] CADT_API std::vector<std::array<std::int32_t, 2>> find_crossings(PointsView points,
                                                                                std::span<const Segment> segments,
-                                                                               unsigned threads = 0);
+                                                                               const Options& options = {});
 
 /// Values of the input points, `columns` of them a point, and behind them those of added_points(): linear along the
 /// first of their two segments (added_parents) from the nearest input point before them to the nearest one behind.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from cadt._batch import Batch, triangulate_batch
-    from cadt._constrained import ConstrainedDelaunay, find_crossings
+    from cadt._constrained import ConstrainedDelaunay
     from cadt._delaunay import Delaunay
     from cadt._devices import DeviceInfo, devices, release_memory
     from cadt._errors import (
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from cadt._labels import LabelSegments, label_segments, triangle_labels
     from cadt._polygons import PolygonProblem, Polygons, polygons
     from cadt._results import Check, VerifyReport, Voronoi
+    from cadt._segments import find_crossings
     from cadt._verify import verify
 
 # Where a name stands; all others of __all__ are exceptions, in _errors.
@@ -62,7 +63,7 @@ _MODULE_OF = {
     "VerifyReport": "_results",
     "Voronoi": "_results",
     "devices": "_devices",
-    "find_crossings": "_constrained",
+    "find_crossings": "_segments",
     "label_segments": "_labels",
     "polygons": "_polygons",
     "release_memory": "_devices",

@@ -11,7 +11,7 @@ from cadt import _cadt, _devices, _gpu, _show
 from cadt._arrays import adapter_of, array_on_device
 from cadt._errors import InputError, InternalError, OptionError
 from cadt._mesh import Mesh, read_only
-from cadt._points import as_input, as_pairs, as_points, as_values, contiguous
+from cadt._points import as_input, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
 from cadt._segments import constraints_of, segments_of, segments_there
@@ -102,8 +102,9 @@ class ConstrainedDelaunay(Mesh):
     >>> mesh = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain="even_odd")
     >>> mesh
     <cadt.ConstrainedDelaunay: 8 points, 8 segments, 10 triangles, 8 inside, host>
-    >>> mesh.triangles_inside.shape, bool(mesh.inside[mesh.find_simplex([1.5, 1.5])])
-    ((8, 3), False)
+    >>> t = mesh.find_simplex([[0.5, 0.5], [1.5, 1.5], [9, 9]])  # -1: in no triangle
+    >>> mesh.triangles_inside.shape, ((t >= 0) & mesh.inside[t]).tolist()
+    ((8, 3), [True, False, False])
 
     Two segments that cross:
 
@@ -136,8 +137,7 @@ class ConstrainedDelaunay(Mesh):
     ) -> None:
         self._gpu: _gpu.ConstrainedMesh | None = None
         self._cache: dict[str, Any] = {}
-        self._constraints = constraints_of(crossing, domain, holes, regions)
-        self._again = {"crossing": crossing, "domain": domain, "holes": holes, "regions": regions}
+        self._constraints, self._again = constraints_of(crossing, domain, holes, regions)
         if (on_gpu := array_on_device(points)) is not None:
             self._mesh, self._points, self._given = None, points, int(on_gpu.a.shape[0])
             self._segments = segments_there(on_gpu, segments, polylines, rings)
@@ -211,7 +211,8 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def inside(self) -> np.ndarray:
-        """(t,) bool, with PyOpenCL int8: whether each triangle is inside (the parameter `domain`)."""
+        """(t,) bool, with PyOpenCL int8: whether each triangle is inside (the parameter `domain`). Queries and rasters take
+        all triangles; places `xi` are inside where ``(t >= 0) & mesh.inside[t]`` with ``t = mesh.find_simplex(xi)``."""
         return self._of("inside", lambda c: c.inside.view(bool), lambda g: g.inside)
 
     @property
@@ -262,14 +263,15 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def rounded_valid(self) -> bool:
-        """Whether triangles are still counterclockwise with rounded coordinates. True without added points."""
+        """Whether triangles are still counterclockwise with rounded coordinates. True without added points. If not,
+        queries raise `InvalidMesh`, and `verify` names those that rounding has turned over."""
         return (self._made if self._gpu is None else self._gpu.mesh).rounded_valid
 
     def at_crossings(self, values: Any) -> Any:
         """Values of the points that were given, shape (n, ...), with those of `added_points` behind them.
 
         They are linear along the first of their two segments (`added_parents`) from the given point before to the one
-        behind. Those of points on a GPU are computed on the host.
+        behind, at their rounded places. Those of points on a GPU are computed on the host.
 
         >>> mesh = cadt.ConstrainedDelaunay([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]], crossing="exact")
         >>> mesh.at_crossings([0, 10, 7, 7])
@@ -379,22 +381,3 @@ class ConstrainedDelaunay(Mesh):
 
 def _restore(cls: type[ConstrainedDelaunay], points: np.ndarray, segments: np.ndarray, how: dict) -> Any:
     return cls(points, segments, backend="host", **how)
-
-
-def find_crossings(points: Any, segments: Any, *, threads: int | None = None) -> np.ndarray:
-    """All pairs of segments that cross: (p, 2) int32, the lower index first, ascending. Exact.
-
-    Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected.
-
-    Raises
-    ------
-    InputError
-        As for `ConstrainedDelaunay`.
-    OptionError
-        `threads` is no whole number, or negative.
-
-    >>> cadt.find_crossings([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]])
-    array([[0, 1]], dtype=int32)
-    """
-    most = _devices.whole(threads, "threads", 31)
-    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), most)

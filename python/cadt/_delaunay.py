@@ -47,7 +47,7 @@ class Delaunay(Mesh):
         What `statistics` counts.
     progress : bool or callable, optional
         True: a progress bar of tqdm where it is installed, else a line on a terminal. A callable gets
-        ``(phase, fraction)``; what it raises ends the call.
+        ``(phase, fraction)``; what it raises ends the call. With segments that cross a second mesh begins at 0 again.
 
     Raises
     ------

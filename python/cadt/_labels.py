@@ -70,10 +70,14 @@ def _as_labels(labels: Any) -> np.ndarray:
     form = "integers of shape (rows, columns)"
     a = as_array(labels, "labels", form, "fill them: a label of its own says that there is none")
     if a.ndim != 2 or a.dtype.kind not in "iub":
-        raise InputError(f"labels must be {form}, not {a.dtype} of {a.shape}", 0)
+        hint = ""
+        if a.ndim == 3 and a.shape[2] in (3, 4) and a.dtype == np.uint8:
+            hint = "; of colours make numbers: labels[..., :3] @ [65536, 256, 1]"
+        raise InputError(f"labels must be {form}, not {a.dtype} of {a.shape}{hint}", 0)
     if a.dtype.itemsize > 4 or a.dtype == np.uint32:
         wrong = (a > np.iinfo(np.int32).max) | (a < _OUTSIDE if a.dtype.kind == "i" else False)
         if wrong.any():
             first = int(np.argmax(wrong))
-            raise InputError(f"the label {a.flat[first]} of pixel {first} does not fit in 32 bits", first)
+            row, column = divmod(first, a.shape[1])
+            raise InputError(f"the label {a.flat[first]} of pixel ({row}, {column}) does not fit in 32 bits", first)
     return contiguous(a, np.int32)

@@ -136,7 +136,8 @@ class Mesh(Queries):
         return _show.to_meshio(self, z)
 
     def save(self, path: Any, z: Any = None) -> None:
-        """Writes ``.npz`` (points, simplices, neighbors), or with meshio what the suffix says (``.ply .vtk .obj .stl``).
+        """Writes ``.npz`` (points, simplices, neighbors, convex_hull, and `z` as height), or with meshio what the suffix says
+        (``.ply .vtk .obj .stl``): all triangles, without segments and domains.
 
         The file appears whole or not at all, and behind a symbolic link, if `path` is one.
 

@@ -23,7 +23,13 @@ def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> 
     if a.ndim != 2 or a.shape[1] != 2:
         if a.size == 0 and a.ndim == 1:
             return np.empty((0, 2))
-        hint = "; cadt.scipy.Delaunay takes more dimensions (with Qhull)" if a.ndim == 2 and what == "points" else ""
+        hint = ""
+        if a.ndim == 2 and what == "points":
+            hint = "; cadt.scipy.Delaunay takes more dimensions (with Qhull)"
+            if a.shape[1] == 3:
+                hint = "; pass points[:, :2], and heights as values, or cadt.scipy.Delaunay makes tetrahedra (with Qhull)"
+            elif a.shape[0] == 2:
+                hint = "; pass points.T"
         raise InputError(f"{what} must have shape {columns}, not {a.shape}{hint}", 0)
     if a.dtype not in _FLOATS or not a.dtype.isnative:
         a = to_float(a, what)
@@ -73,7 +79,7 @@ def as_array(a: Any, what: str, form: str, advice: str = "") -> np.ndarray:
 
 def to_array(points: Any, what: str) -> np.ndarray:
     """Lists, anything with ``__array__`` or, on the host, ``__dlpack__``."""
-    points = unmasked(points, what, f"pass {what}.compressed() or the rows without a mask")
+    points = unmasked(points, what, f"pass np.ma.compress_rows({what}), which are the rows without a mask")
     if isinstance(points, (list, tuple)) or hasattr(points, "__array__"):
         try:
             return _of_columns(points, np.asarray(points), what)
@@ -201,6 +207,9 @@ def as_indices(a: Any, what: str) -> np.ndarray:
 def as_pairs(segments: Any, what: str) -> np.ndarray:
     """Integers of shape (m, 2) as int32."""
     a = as_array(segments, what, "integers of shape (m, 2)")
+    kinds = {getattr(d, "kind", "") for d in np.atleast_1d(np.asarray(getattr(segments, "dtypes", ()), dtype=object))}
+    if a.dtype == object and kinds and kinds <= set("iu"):
+        a = _of_columns(segments, a, what).astype(np.int64)
     if a.size == 0 and a.ndim <= 2:
         return np.empty((0, 2), dtype=np.int32)
     if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,9 @@ from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+
+_EMPTY = bytes((1, POLYGON)) + bytes(7)  # a polygon without rings, in WKB
 
 
 class PolygonProblem(NamedTuple):
@@ -38,7 +42,7 @@ class Polygons:
     Attributes
     ----------
     points : (n, 2)
-        The points of all rings.
+        The points of all rings: the array that was given, where it could be taken as it is. It must not change.
     triangles : (t, 3) int32
         Of all polygons, one after another, counterclockwise; indices of `points`.
     triangle_offsets : (p + 1,) int64
@@ -113,8 +117,10 @@ def polygons(
     ----------
     geometry : array_like, shape (n, 2); or polygons
         Points of rings, with offsets. Or a ``geopandas.GeoSeries`` or ``GeoDataFrame``, an array or list of shapely's
-        polygons and multipolygons, or a list, array or Series of them in WKB (bytes). Each row is one polygon; heights
-        are left out. An empty one has too few points.
+        polygons and multipolygons, or a list, array or Series of them in WKB (bytes). Each row is one polygon, also one of
+        several parts, of which none may cross another; ``GeoSeries.explode`` makes them rows of their own. Heights are
+        left out, and so is what is no polygon in a collection (as ``make_valid`` makes them), which WKB may not have.
+        Rows that are empty or missing have too few points.
     ring_offsets : array_like of int, shape (r + 1,), optional
         Ring r has the points ``ring_offsets[r]`` to ``ring_offsets[r + 1] - 1``. It may repeat its first point.
     polygon_offsets : array_like of int, shape (p + 1,), optional
@@ -128,7 +134,8 @@ def polygons(
     Notes
     -----
     Inside is what an odd number of rings goes around; their directions do not matter. A polygon with a defect has no
-    triangles and is listed in `problems`, the others do not suffer. The other parameters are as for `Delaunay`.
+    triangles and is listed in `problems`, the others do not suffer; ``GeoSeries.make_valid`` mends most of them, or
+    `ConstrainedDelaunay` with its crossings. The other parameters are as for `Delaunay`.
 
     Examples
     --------
@@ -165,11 +172,13 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
         geometry = _as_objects(geometry)
     if isinstance(geometry, (list, tuple, np.ndarray)):
         in_wkb = [isinstance(g, (bytes, bytearray, memoryview)) for g in geometry]
-        if all(in_wkb):
-            points, rings, polygons_ = lines_of_wkb(list(geometry), (POLYGON, MULTIPOLYGON))
+        missing = [type(g).__name__ in ("NoneType", "NAType") or (isinstance(g, float) and g != g) for g in geometry]
+        if all(map(operator.or_, in_wkb, missing)) and not (missing and all(missing)):
+            in_rows = [_EMPTY if gone else g for g, gone in zip(geometry, missing)]
+            points, rings, polygons_ = lines_of_wkb(in_rows, (POLYGON, MULTIPOLYGON))
             return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, crs
         if any(in_wkb):
-            first = in_wkb.index(False)
+            first = list(map(operator.or_, in_wkb, missing)).index(False)
             kind = type(geometry[first]).__name__
             raise InputError(
                 f"geometry {first} is a {kind}: pass WKB bytes of all polygons in a list, an array or a Series", first
@@ -182,11 +191,15 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
             "list, an array or a Series",
             0,
         )
-    wrong = ~np.isin(shapely.get_type_id(rows), (-1, 3, 6))
+    wrong = ~np.isin(shapely.get_type_id(rows), (-1, 3, 6, 7))
     if wrong.any():
         first = int(np.argmax(wrong))
         raise InputError(f"geometry {first} is a {rows[first].geom_type}: pass polygons and multipolygons", first)
     parts, row = shapely.get_parts(rows, return_index=True)
+    while (shapely.get_type_id(parts) > 3).any():  # collections have parts in turn
+        parts, part = shapely.get_parts(parts, return_index=True)
+        row = row[part]
+    row, parts = row[shapely.get_type_id(parts) == 3], parts[shapely.get_type_id(parts) == 3]
     rings, part = shapely.get_rings(parts, return_index=True)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     ring_offsets = offsets_of(np.bincount(ring, minlength=len(rings)))

@@ -219,7 +219,11 @@ void bind_constrained(nb::module_& m) {
   });
   m.def("find_crossings", [](const Points& points, const Pairs& segments, unsigned threads) {
     const cadt::PointsView view = view_of(points);
-    return array_of_pairs(without_gil([&] { return cadt::find_crossings(view, segments_of(segments), threads); }));
+    cadt::Options options;
+    options.threads = threads;
+    const nb::object none = nb::none();
+    return array_of_pairs(
+        Call(none)(options, [&] { return cadt::find_crossings(view, segments_of(segments), options); }));
   });
   bind_polygons(m);
   bind_labels(m);

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -299,6 +300,33 @@ def test_masked_segments() -> None:
     for name in ("holes", "regions"):
         with pytest.raises(cadt.InputError, match=f"{name} are masked"):
             cadt.ConstrainedDelaunay(SQUARES, domain="seeds", **{name: np.ma.array([[1.5, 1.5, 1]], mask=True)})
+
+
+def test_copies_do_not_see_what_the_caller_changes() -> None:
+    holes, regions, crossing = np.array([[1.5, 1.5]]), [[0.5, 0.5, 7.0]], ["grid", 0.5]
+    how: dict[str, Any] = {"rings": [0, 4, 8], "domain": "seeds", "holes": holes, "regions": regions, "crossing": crossing}
+    mesh = cadt.ConstrainedDelaunay(SQUARES, **how)
+    holes[:], crossing[1] = 0.5, 3.0
+    regions.append([float("nan"), 0.0, 0.0])
+    for again in (copy.copy(mesh), pickle.loads(pickle.dumps(mesh))):
+        assert again.hash == mesh.hash and again.inside.sum() == mesh.inside.sum() == 8
+        assert np.array_equal(again.points, mesh.points) and set(again.region_attribute) == {0, 7}
+
+
+@pytest.mark.parametrize("kind", ["Int64", "UInt8", "int64[pyarrow]", "Float64"])
+def test_segments_in_columns_that_can_have_gaps(kind: str) -> None:
+    pandas = pytest.importorskip("pandas")
+    if "pyarrow" in kind:
+        pytest.importorskip("pyarrow")
+    table = pandas.DataFrame([[0, 1], [1, 2]], columns=["from", "to"]).astype(kind)
+    if kind != "Float64":
+        assert cadt.ConstrainedDelaunay(SQUARES, table).segments.tolist() == [[0, 1], [1, 2]]
+        table.iloc[1, 1] = pandas.NA
+        with pytest.raises(cadt.InputError, match=r"segments: row 1 has a missing value \(NA\)"):
+            cadt.ConstrainedDelaunay(SQUARES, table)
+    else:
+        with pytest.raises(cadt.InputError, match="segments must be integers"):
+            cadt.ConstrainedDelaunay(SQUARES, table)
 
 
 def test_plot(tmp_path: Path) -> None:

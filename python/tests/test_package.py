@@ -62,7 +62,7 @@ def test_there_are_examples() -> None:
     finder = doctest.DocTestFinder()
     with_examples = sum(
         bool(t.examples)
-        for n in ("cadt._constrained", "cadt._delaunay", "cadt._mesh", "cadt._queries", "cadt.scipy._interpolate")
+        for n in ("cadt._constrained", "cadt._delaunay", "cadt._mesh", "cadt._queries", "cadt._segments", "cadt.scipy._interpolate")
         for t in finder.find(importlib.import_module(n))
     )
     assert with_examples >= 13

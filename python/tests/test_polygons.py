@@ -150,8 +150,9 @@ def test_wkb_of_arrow(kind: str) -> None:
     array = pyarrow.array(rows, of)
     for given in (series, array, pyarrow.chunked_array([array[:1], array[1:]])):
         np.testing.assert_array_equal(cadt.polygons(given).triangles, expected)
-    with pytest.raises(cadt.InputError, match="WKB bytes of all polygons"):
-        cadt.polygons(pandas.Series([rows[0], None], dtype=series.dtype))
+    missing = cadt.polygons(pandas.Series([rows[0], None, rows[1]], dtype=series.dtype))
+    assert areas(missing).tolist() == [9, 0, 9]
+    assert missing.problems == ((1, "too few points", -1, -1),)
     pytest.importorskip("geopandas")
     assert list(cadt.polygons(series).to_geoseries().index) == ["a"] * 2 + ["b"] * 2
     assert list(cadt.polygons(array).to_geoseries().index) == [0] * 2 + [1] * 2
@@ -169,10 +170,13 @@ def test_wkb_of_others_is_refused() -> None:
             cadt.polygons([wkb([SQUARE], kind=kind)])
     with pytest.raises(cadt.InputError, match="geometry 1 cannot be read as WKB: there is more at byte 93"):
         cadt.polygons([wkb([SQUARE]) + b"\0\0", wkb([SQUARE]) + b"\0\1"])
-    for given in ([wkb([SQUARE]), None], (wkb([SQUARE]), None)):
-        with pytest.raises(cadt.InputError, match="geometry 1 is a NoneType: pass WKB bytes of all") as caught:
+    for given in ([wkb([SQUARE]), 3], (None, wkb([SQUARE]), 3.5)):
+        with pytest.raises(cadt.InputError, match=f"geometry {len(given) - 1} is a .*: pass WKB bytes of all") as caught:
             cadt.polygons(given)
-        assert caught.value.index == 1
+        assert caught.value.index == len(given) - 1
+    for missing in (None, float("nan")):
+        result = cadt.polygons([missing, wkb([SQUARE])])
+        assert areas(result).tolist() == [0, 9] and result.problems == ((0, "too few points", -1, -1),)
     huge = struct.pack("<BIII", 1, 3, 1, 2**32 - 1)
     with pytest.raises(cadt.InputError):
         cadt.polygons([huge])
@@ -199,6 +203,21 @@ def test_shapely() -> None:
     for wrong in ("a square", [[0, 0], [1, 1]], 3):
         with pytest.raises(cadt.InputError):
             cadt.polygons(wrong)
+
+
+def test_polygons_of_collections() -> None:
+    """As shapely.make_valid returns them; what is no polygon is left out."""
+    shapely = pytest.importorskip("shapely")
+    line, box = shapely.LineString([[0, 0], [9, 9]]), shapely.box(20, 20, 22, 22)
+    nested = shapely.GeometryCollection([line, shapely.GeometryCollection([box, shapely.Point(1, 1)]), *geometries()[:2]])
+    rows = [shapely.GeometryCollection([box, line]), shapely.Polygon(SQUARE), shapely.GeometryCollection(), nested]
+    result = cadt.polygons(rows)
+    assert areas(result).tolist() == [4, 9, 0, 4 + 1]  # an even number of rings is around the square that is there twice
+    assert [p.reason for p in result.problems] == ["too few points"]
+    rows[3] = shapely.GeometryCollection([line, shapely.GeometryCollection([shapely.MultiPolygon([box]), line])])
+    assert areas(cadt.polygons(rows)).tolist() == [4, 9, 0, 4]
+    spike = shapely.from_wkt("POLYGON((0 0,4 0,4 4,6 6,4 4,0 4,0 0))")
+    assert areas(cadt.polygons([shapely.make_valid(spike)])).tolist() == [16]
 
 
 def test_geoseries() -> None:

@@ -258,6 +258,14 @@ def test_interrupt_while_segments_cross() -> None:
             except KeyboardInterrupt: times.append((time.monotonic() - begin) / whole)
             if times and times[-1] < 0.5: break
         assert times and times[-1] < 0.5, times
+        p = rng.random((4000, 2)); s = np.arange(4000).reshape(-1, 2); times = []
+        for _ in range(5):
+            begin = time.monotonic(); cadt.find_crossings(p, s); whole = time.monotonic() - begin; begin = time.monotonic()
+            timer = threading.Timer(whole / 8, os.kill, (os.getpid(), signal.SIGINT)); timer.start()
+            try: cadt.find_crossings(p, s); timer.join(); time.sleep(1)
+            except KeyboardInterrupt: times.append((time.monotonic() - begin) / whole)
+            if times and times[-1] < 0.5: break
+        assert times and times[-1] < 0.5, times
         print("done")
     """)
 

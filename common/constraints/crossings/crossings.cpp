@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <numeric>
 #include <span>
 
 namespace cadt {
@@ -57,16 +58,24 @@ class Stabbed {
 }  // namespace
 
 std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, const StopCheck& check_stop) {
-  // Wall by wall: the input segments through each of its crossings
-  std::vector<std::vector<std::int32_t>> through(in.members.size());
-  std::vector<std::vector<std::size_t>> members_of(in.wall_offsets.size() - 1);
+  // Wall by wall: the input segments through each of its crossings, those of member m from begins[m] to ends[m] - 1
+  const std::size_t walls = in.wall_offsets.size() - 1;
+  std::vector<std::size_t> begins(in.members.size()), ends(in.members.size()), ends_of_wall(walls);
+  std::vector<std::size_t> by_wall(in.members.size());
+  for (const Arrangement::Member& m : in.members) ++ends_of_wall[static_cast<std::size_t>(m.wall)];
+  std::exclusive_scan(ends_of_wall.begin(), ends_of_wall.end(), ends_of_wall.begin(), std::size_t{0});
   for (std::size_t m = 0; m < in.members.size(); ++m)
-    members_of[static_cast<std::size_t>(in.members[m].wall)].push_back(m);
-  for (std::size_t wall = 0; wall < members_of.size(); ++wall) {
+    by_wall[ends_of_wall[static_cast<std::size_t>(in.members[m].wall)]++] = m;
+  std::vector<std::int32_t> through;
+  for (std::size_t wall = 0, first = 0; wall < walls; first = ends_of_wall[wall++]) {
     check_stop();
-    if (members_of[wall].empty()) continue;
+    if (ends_of_wall[wall] == first) continue;
     const Stabbed stabbed(in, wall);
-    for (const std::size_t m : members_of[wall]) stabbed.append(in.members[m].position, through[m]);
+    for (std::size_t i = first; i < ends_of_wall[wall]; ++i) {
+      begins[by_wall[i]] = through.size();
+      stabbed.append(in.members[by_wall[i]].position, through);
+      ends[by_wall[i]] = through.size();
+    }
   }
   std::vector<std::array<std::int32_t, 2>> pairs;
   for (std::size_t c = 0; c < in.crossings.size(); ++c) {
@@ -75,8 +84,9 @@ std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, c
     const auto last = static_cast<std::size_t>(in.member_offsets[c + 1]);
     for (std::size_t i = first; i < last; ++i)
       for (std::size_t j = i + 1; j < last; ++j)
-        for (const std::int32_t s : through[i])
-          for (const std::int32_t t : through[j]) pairs.push_back({std::min(s, t), std::max(s, t)});
+        for (std::size_t s = begins[i]; s < ends[i]; ++s)
+          for (std::size_t t = begins[j]; t < ends[j]; ++t)
+            pairs.push_back({std::min(through[s], through[t]), std::max(through[s], through[t])});
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -85,8 +95,9 @@ std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, c
 }  // namespace constraints
 
 std::vector<std::array<std::int32_t, 2>> find_crossings(PointsView points, std::span<const Segment> segments,
-                                                        unsigned threads) {
-  return constraints::crossing_pairs(constraints::arrange(points, segments, threads));
+                                                        const Options& options) {
+  const constraints::StopCheck check_stop(options, 0);
+  return constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, check_stop), check_stop);
 }
 
 }  // namespace cadt

@@ -17,7 +17,8 @@ using Place = SeedBuckets::Place;
 
 void add_seed(std::vector<Place>& seeds, const char* option, std::size_t i, double x, double y) {
   if (!std::isfinite(x) || !std::isfinite(y))
-    throw OptionError(option, "place " + std::to_string(i) + " is not finite: give two numbers", "ConstraintOptions::");
+    throw OptionError(option, "place " + std::to_string(i) + " is not finite: give x and y as finite numbers",
+                      "ConstraintOptions::");
   seeds.push_back({x, y});
 }
 

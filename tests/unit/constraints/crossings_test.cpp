@@ -24,7 +24,11 @@ namespace {
 
 using Pairs = std::vector<std::array<std::int32_t, 2>>;
 
-Pairs pairs_of(const SegmentSet& set, unsigned threads = 1) { return find_crossings(set.xy, set.segments, threads); }
+Pairs pairs_of(const SegmentSet& set, unsigned threads = 1) {
+  Options options;
+  options.threads = threads;
+  return find_crossings(set.xy, set.segments, options);
+}
 
 TEST(Crossings, EqualAllPairs) {
   std::size_t found = 0;
@@ -61,13 +65,31 @@ TEST(Crossings, APointAtTheCrossingTakesItAway) {
   EXPECT_EQ(find_crossings(third, segments).size(), 1U);
 }
 
+TEST(Crossings, AreStoppedByTheCallerWhoHearsOfThem) {
+  const SegmentSet set = random_segments(7, 300, 0.5);
+  for (const unsigned threads : {1U, 3U}) {
+    Options options;
+    cadt::stop_source source;
+    std::size_t told = 0;
+    options.threads = threads;
+    options.stop = source.get_token();
+    options.progress = [&](const Progress& progress) {
+      EXPECT_EQ(progress.phase, "cross");
+      ++told;
+      source.request_stop();
+    };
+    EXPECT_THROW((void)find_crossings(set.xy, set.segments, options), Cancelled);
+    EXPECT_EQ(told, 1U);
+  }
+}
+
 /// Neither in another rounding nor where tiny numbers are 0: there they would be missed.
 TEST(Crossings, NoAnswerWithoutIeeeArithmetic) {
   const std::vector<double> tiny = {0, 0, 15e-324, 15e-324, 0, 15e-324, 15e-324, 0};
   const std::vector<Segment> segments = {{0, 1}, {2, 3}};
   const auto refused = [&] {
     try {
-      (void)find_crossings(tiny, segments, 1);
+      (void)find_crossings(tiny, segments);
       return std::string();
     } catch (const Error& error) {
       return std::string(error.what());
@@ -87,7 +109,7 @@ TEST(Crossings, NoAnswerWithoutIeeeArithmetic) {
     EXPECT_NE(flushed.find("IEEE"), std::string::npos) << flag;
   }
 #endif
-  EXPECT_EQ(find_crossings(tiny, segments, 1).size(), 1U);
+  EXPECT_EQ(find_crossings(tiny, segments).size(), 1U);
 }
 
 TEST(Crossings, OrderAndDirectionDoNotMatter) {

@@ -15,6 +15,7 @@
 #include "common/constraints/stop_check.hpp"
 #include "common/driver/triangulation_data.hpp"
 #include "common/platform/parallel.hpp"
+#include "common/points/device_points.hpp"
 
 namespace cadt {
 namespace {
@@ -145,6 +146,33 @@ DeviceMesh constrain_rounded(const State& state, std::size_t n, const SegmentJob
   return data;
 }
 
+bool suits_device(Device& device, const constraints::DividedSegments& divided) {
+  constexpr std::size_t most = std::size_t{1} << 30;  // segments of a call
+  return !takes_floats_only(device) && !divided.parents.empty() && divided.vertices.size() < most;
+}
+
+/// What the sweep has found, as the device finds it.
+FoundCrossings upload_crossings(Memory& memory, PointsView points, const constraints::DividedSegments& divided) {
+  FoundCrossings found;
+  found.count = divided.parents.size();
+  found.pairs = memory.upload(std::span(divided.parents));
+  std::vector<double> xy(2 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) xy[2 * i] = points.x(i), xy[2 * i + 1] = points.y(i);
+  xy.insert(xy.end(), divided.added_xy.begin(), divided.added_xy.end());
+  found.places = memory.upload(std::span(std::as_const(xy)));
+  const std::vector<std::uint32_t> offsets(divided.offsets.begin(), divided.offsets.end());
+  found.chain_offsets = memory.upload(std::span(offsets));
+  found.chains = memory.upload(std::span(divided.vertices));
+  found.chain_length = divided.vertices.size();
+  std::vector<Segment> edges(divided.vertices.size());
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i)
+      edges[i] = {divided.vertices[i], divided.vertices[std::min<std::size_t>(i + 1, offsets[s + 1] - 1)]};
+  }
+  found.chain_edges = memory.upload(std::span(std::as_const(edges)));
+  return found;
+}
+
 }  // namespace
 
 void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
@@ -169,15 +197,23 @@ void refuse_crossings(const State& state, PointsView points, std::span<const Seg
 
 void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments,
                        std::optional<FoundCrossings> found, Data& data) {
-  if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
+  const bool placed = found && found->places;  // by the device
+  if (placed && constrain_rounded(state, points, segments, std::move(*found), data)) return;
+  const unsigned threads = state->options.threads;
+  const constraints::StopCheck check_stop(state->options, 1);
+  const constraints::Arrangement in = constraints::arrange(points, segments, threads, check_stop);
+  constraints::DividedSegments divided = constraints::divide_segments(in, segments);
+  if (!placed && suits_device(*state->device, divided) &&
+      constrain_rounded(state, points, segments, upload_crossings(state->memory, points, divided), data))
+    return;
   const Triangulation delaunay = triangulate_on_host(state, points);
-  constraints::ExactMesh exact = constraints::triangulate_with_crossings(
-      points, segments, delaunay, state->options.threads, constraints::StopCheck(state->options, 1));
-  data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
-  data.added = std::move(exact.added_xy);
-  data.parents = std::move(exact.parents);
+  const constraints::ExactMesh exact =
+      constraints::triangulate_with_crossings(in, divided.number, delaunay, threads, check_stop);
+  data.mesh = triangulation_of(delaunay, exact, divided.added_xy, data.edge_flags);
+  data.added = std::move(divided.added_xy);
+  data.parents = std::move(divided.parents);
   data.rounded_valid = exact.rounded_valid;
-  take_chains(data, std::move(exact.offsets), std::move(exact.vertices));
+  take_chains(data, std::move(divided.offsets), std::move(divided.vertices));
 }
 
 DeviceMesh constrain_exactly(const State& state, const DevicePoints& points, SegmentJob job) {

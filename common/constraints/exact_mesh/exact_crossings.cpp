@@ -70,14 +70,45 @@ MeshEditor edit(const Arrangement& in, const Triangulation& delaunay, const Stop
 
 }  // namespace
 
-ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
+DividedSegments divide_segments(const Arrangement& in, std::span<const Segment> segments) {
+  const std::size_t points = in.rank.size(), ranks = in.points.size(), crossings = in.crossings.size();
+  DividedSegments out;
+  // Added vertices in the order of their pairs
+  std::vector<std::int32_t> order(crossings);
+  out.number.resize(ranks + crossings);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return in.parents[static_cast<std::size_t>(a)] < in.parents[static_cast<std::size_t>(b)];
+  });
+  std::copy(in.representative.begin(), in.representative.end(), out.number.begin());
+  for (const std::int32_t c : order) {
+    const auto i = static_cast<std::size_t>(c);
+    out.number[ranks + i] = static_cast<std::int32_t>(points + out.parents.size());
+    out.added_xy.insert(out.added_xy.end(), {in.crossings[i].x, in.crossings[i].y});
+    out.parents.push_back(in.parents[i]);
+  }
+
+  out.offsets.assign(segments.size() + 1, 0);
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    if (in.segment_of[s] >= 0) {
+      const auto same = static_cast<std::size_t>(in.segment_of[s]);
+      const auto first = out.vertices.size();
+      for (std::int64_t i = in.segment_first[same]; i <= in.segment_last[same]; ++i)
+        out.vertices.push_back(out.number[static_cast<std::size_t>(in.chain_vertices[static_cast<std::size_t>(i)])]);
+      if (in.rank[static_cast<std::size_t>(segments[s][0])] != in.segments[same][0])
+        std::reverse(out.vertices.begin() + static_cast<std::ptrdiff_t>(first), out.vertices.end());
+    }
+    out.offsets[s + 1] = static_cast<std::int64_t>(out.vertices.size());
+  }
+  return out;
+}
+
+ExactMesh triangulate_with_crossings(const Arrangement& in, std::span<const std::int32_t> number,
                                      const Triangulation& delaunay, unsigned threads, const StopCheck& check_stop) {
-  const Arrangement in = arrange(points, segments, threads, check_stop);
-  const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
   MeshEditor mesh = edit(in, delaunay, check_stop);
   for (const std::int32_t c : insertion_order(in)) {
     check_stop();
-    mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
+    mesh.insert_vertex(static_cast<std::int32_t>(in.points.size()) + c);
   }
   for (const std::size_t wall : order_of_walls(mesh.triangles().empty() ? 0 : in.chain_offsets.size() - 1)) {
     mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
@@ -85,20 +116,6 @@ ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment>
   }
 
   ExactMesh out;
-  // Added vertices in the order of their pairs
-  std::vector<std::int32_t> order(crossings), number(ranks + crossings);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return in.parents[static_cast<std::size_t>(a)] < in.parents[static_cast<std::size_t>(b)];
-  });
-  std::copy(in.representative.begin(), in.representative.end(), number.begin());
-  for (const std::int32_t c : order) {
-    const auto i = static_cast<std::size_t>(c);
-    number[ranks + i] = static_cast<std::int32_t>(points.size() + out.parents.size());
-    out.added_xy.insert(out.added_xy.end(), {in.crossings[i].x, in.crossings[i].y});
-    out.parents.push_back(in.parents[i]);
-  }
-
   out.neighbors = mesh.neighbors();
   out.edge_flags.assign(mesh.flags().begin(), mesh.flags().end());
   out.triangles.resize(mesh.triangles().size());
@@ -118,19 +135,6 @@ ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment>
     }
   });
   out.rounded_valid = valid.load();
-
-  out.offsets.assign(segments.size() + 1, 0);
-  for (std::size_t s = 0; s < segments.size(); ++s) {
-    if (in.segment_of[s] >= 0) {
-      const auto same = static_cast<std::size_t>(in.segment_of[s]);
-      const auto first = out.vertices.size();
-      for (std::int64_t i = in.segment_first[same]; i <= in.segment_last[same]; ++i)
-        out.vertices.push_back(number[static_cast<std::size_t>(in.chain_vertices[static_cast<std::size_t>(i)])]);
-      if (in.rank[static_cast<std::size_t>(segments[s][0])] != in.segments[same][0])
-        std::reverse(out.vertices.begin() + static_cast<std::ptrdiff_t>(first), out.vertices.end());
-    }
-    out.offsets[s + 1] = static_cast<std::int64_t>(out.vertices.size());
-  }
   return out;
 }
 

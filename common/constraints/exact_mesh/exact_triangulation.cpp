@@ -13,7 +13,7 @@
 namespace cadt {
 
 Triangulation triangulation_of(const Triangulation& delaunay, const constraints::ExactMesh& mesh,
-                               std::vector<std::uint32_t>& edge_flags) {
+                               std::span<const double> added_xy, std::vector<std::uint32_t>& edge_flags) {
   const std::size_t count = mesh.triangles.size() / 3;
   const auto corner = [&](std::size_t t, std::size_t k) { return mesh.triangles[3 * t + k % 3]; };
   // Where the smallest vertex of each triangle is, and the triangles in order.
@@ -31,7 +31,7 @@ Triangulation triangulation_of(const Triangulation& delaunay, const constraints:
   for (std::size_t i = 0; i < count; ++i) place[order[i]] = static_cast<std::int32_t>(i);
 
   auto data = std::make_unique<Triangulation::Data>();
-  data->points = delaunay.number_of_points() + mesh.added_xy.size() / 2;
+  data->points = delaunay.number_of_points() + added_xy.size() / 2;
   data->triangle_count = count;
   data->triangles = make_words(3 * count);
   data->neighbors = make_words(3 * count);
@@ -54,8 +54,7 @@ Triangulation triangulation_of(const Triangulation& delaunay, const constraints:
   data->duplicates.assign(delaunay.duplicates().begin(), delaunay.duplicates().end());
   data->dimension = delaunay.dimension();
   data->statistics = delaunay.statistics();
-  if (const PointsView kept = delaunay.points(); kept.size() != 0)
-    give_points(*data, kept, KeepPoints::copy, mesh.added_xy);
+  if (const PointsView kept = delaunay.points(); kept.size() != 0) give_points(*data, kept, KeepPoints::copy, added_xy);
   return Triangulation(std::move(data));
 }
 

@@ -4,6 +4,7 @@
 #include <cadt/triangulation.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/constraints/exact_mesh/exact_crossings.hpp"
@@ -14,6 +15,6 @@ namespace cadt {
 /// Hull and duplicates are those of the input's points alone: crossings lie inside, or on the hull. `delaunay`: of
 /// these points; if it has kept them, the result has a copy of them and of the crossings.
 [[nodiscard]] Triangulation triangulation_of(const Triangulation& delaunay, const constraints::ExactMesh& mesh,
-                                             std::vector<std::uint32_t>& edge_flags);
+                                             std::span<const double> added_xy, std::vector<std::uint32_t>& edge_flags);
 
 }  // namespace cadt

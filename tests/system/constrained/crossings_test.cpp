@@ -4,9 +4,9 @@
 #include <cadt/constrained.hpp>
 #include <cadt/errors.hpp>
 
-#include "common/constraints/exact_mesh/exact_crossings.hpp"
 #include "common/constraints/exact_mesh/exact_triangulation.hpp"
 #include "tests/support/backends.hpp"
+#include "tests/support/exact_mesh.hpp"
 #include "tests/support/families.hpp"
 #include "tests/system/constrained/resident_check.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
@@ -42,9 +42,9 @@ class Crossings : public BackendTest {
     if (mesh.mesh().dimension() < 2) return certified;
 
     const Triangulation delaunay = triangulate(set.xy);
-    const constraints::ExactMesh exact = constraints::triangulate_with_crossings(set.xy, set.segments, delaunay, 1);
+    const ExactMesh exact = triangulate_with_crossings(set.xy, set.segments, delaunay, 1);
     std::vector<std::uint32_t> flags;
-    const Triangulation expected = triangulation_of(delaunay, exact, flags);
+    const Triangulation expected = triangulation_of(delaunay, exact, exact.added_xy, flags);
     EXPECT_TRUE(std::ranges::equal(mesh.mesh().triangles(), expected.triangles()));
     EXPECT_TRUE(std::ranges::equal(mesh.mesh().neighbors(), expected.neighbors()));
     EXPECT_TRUE(std::ranges::equal(mesh.mesh().hull(), expected.hull()));
@@ -220,8 +220,7 @@ RoundedCross random_cross(std::uint64_t seed) {
   }
   const std::array<Segment, 1> pairs = {Segment{0, 1}};
   const Triangulation delaunay = triangulate(cross.set.xy);
-  const constraints::ExactMesh exact =
-      constraints::triangulate_with_crossings(cross.set.xy, cross.set.segments, delaunay, 1);
+  const ExactMesh exact = triangulate_with_crossings(cross.set.xy, cross.set.segments, delaunay, 1);
   EXPECT_TRUE(std::ranges::equal(exact.parents, pairs));
   cross.x = exact.added_xy.at(0);
   cross.y = exact.added_xy.at(1);
@@ -302,6 +301,52 @@ TEST_P(Crossings, BundleThroughTheSameTriangles) {
   }
   for (int i = 0; i < 2000; ++i) set.xy.insert(set.xy.end(), {random.uniform(0, 1), random.uniform(0, 1) - 0.5});
   expect_pairs(set);
+}
+
+/// Several segments through one place, and others along each other: the host finds the crossings, and the mesh is that
+/// of rounded places all the same.
+TEST_P(Crossings, SeveralAtOnePlace) {
+  SegmentSet set{"lattice", {}, {}};
+  const auto add = [&](double x, double y, double u, double v) {
+    const auto first = static_cast<std::int32_t>(set.xy.size() / 2);
+    set.xy.insert(set.xy.end(), {x, y, u, v});
+    set.segments.push_back({first, first + 1});
+  };
+  for (int i = 0; i < 9; ++i) {
+    add(-1, i + 0.25, 9, i + 0.25);
+    add(i + 0.25, -1, i + 0.25, 9);
+  }
+  add(-0.5, -0.5, 8.5, 8.5);
+  add(8.625, 8.625, 0.5, 0.5);
+  add(-1, 9.5, 9.5, -1);
+  set.segments.push_back(set.segments[3]);
+  set.segments.push_back({set.segments[4][1], set.segments[4][0]});
+  set.xy.insert(set.xy.end(), {2.25, 2.25, 3, 3, 2.25, 2.25});  // at a crossing, on the diagonals, and a duplicate
+  EXPECT_EQ(check(set), has_doubles());
+  expect_pairs(set);
+}
+
+/// A hatch and one slanted segment across it: with exact places alone, each triangle of a fan takes as long as the fan.
+TEST_P(Crossings, HatchIsDoneInRoundedPlaces) {
+  if (!has_doubles()) GTEST_SKIP() << "the host makes the mesh with exact places alone";
+  constexpr std::int32_t n = 3000;
+  SegmentSet set{"hatch", {}, {}};
+  for (std::int32_t i = 0; i < n; ++i) {
+    const double s = i * 1e-3;
+    set.xy.insert(set.xy.end(), {s, -s, s + n, n - s});
+    set.segments.push_back({2 * i, 2 * i + 1});
+  }
+  set.xy.insert(set.xy.end(), {n / 4 + 0.3, 0, n / 4 - 0.31, n / 2});
+  set.segments.push_back({2 * n, 2 * n + 1});
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  Options options = GetParam().options();
+  options.tuning.kernel_times = true;
+  const ConstrainedTriangulation mesh = triangulate_constrained(set.xy, set.segments, constraints, options);
+  EXPECT_EQ(mesh.added_parents().size(), std::size_t{n});
+  const auto& kernels = mesh.mesh().statistics().kernels;
+  EXPECT_NE(std::ranges::find(kernels, "cadt_certify_places", &KernelTime::name), kernels.end());
+  EXPECT_TRUE(verify(set.xy, set.segments, mesh, constraints, {.threads = 1}).ok);
 }
 
 CADT_ON_MAIN_BACKENDS(Crossings);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The triangulation with exact crossings is certified with GMP's fractions, which suits any doubles.
-#include "common/constraints/exact_mesh/exact_crossings.hpp"
+#include "tests/support/exact_mesh.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gmpxx.h>
@@ -13,8 +13,6 @@
 
 namespace cadt::test {
 namespace {
-
-using constraints::ExactMesh;
 
 struct Exact {
   mpq_class x, y;
@@ -44,7 +42,7 @@ bool inside(const Exact& a, const Exact& b, const Exact& c, const Exact& d) {
 }
 
 void certify(const SegmentSet& set) {
-  const ExactMesh mesh = constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1);
+  const ExactMesh mesh = triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1);
   std::vector<Exact> place;
   for (std::size_t i = 0; i < set.xy.size(); i += 2) place.push_back({set.xy[i], set.xy[i + 1]});
   const std::size_t n = place.size();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The triangulation with exact crossings against CGAL over an exact kernel.
-#include "common/constraints/exact_mesh/exact_crossings.hpp"
 #include "common/constraints/crossings/arrangement.hpp"
 #include "common/verify/host/exact_sign.hpp"
+#include "tests/support/exact_mesh.hpp"
 #include "tests/support/oracle_constrained.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
@@ -19,11 +19,10 @@
 namespace cadt::test {
 namespace {
 
-using constraints::ExactMesh;
 using Edges = std::vector<std::array<std::int32_t, 2>>;
 
 ExactMesh mesh_of(const SegmentSet& set, unsigned threads = 1) {
-  return constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads);
+  return triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads);
 }
 
 std::vector<Triangle> triangles(const ExactMesh& mesh) {
@@ -159,7 +158,7 @@ TEST(ExactCrossings, CrossingsOnCirclesEqualCgal) {
 TEST(ExactCrossings, ByHand) {
   const std::vector<double> xy = {0, 0, 2, 2, 0, 2, 2, 0};
   const std::vector<Segment> segments = {{0, 1}, {3, 2}, {1, 1}};
-  const ExactMesh mesh = constraints::triangulate_with_crossings(xy, segments, triangulate(xy), 1);
+  const ExactMesh mesh = triangulate_with_crossings(xy, segments, triangulate(xy), 1);
   EXPECT_EQ(triangles(mesh), (std::vector<Triangle>{{0, 3, 4}, {0, 4, 2}, {1, 2, 4}, {1, 4, 3}}));
   EXPECT_EQ(mesh.added_xy, (std::vector<double>{1, 1}));
   EXPECT_EQ(mesh.parents, (Edges{{0, 1}}));
@@ -225,7 +224,7 @@ TEST(ExactCrossings, OrderDirectionAndThreadsDoNotMatter) {
 
 TEST(ExactCrossings, PointsOnALineHaveChainsAlone) {
   const std::vector<double> xy = {0, 0, 1, 1, 2, 2, 3, 3};
-  const ExactMesh mesh = constraints::triangulate_with_crossings(xy, std::vector<Segment>{{3, 0}}, triangulate(xy), 1);
+  const ExactMesh mesh = triangulate_with_crossings(xy, std::vector<Segment>{{3, 0}}, triangulate(xy), 1);
   EXPECT_TRUE(mesh.triangles.empty());
   EXPECT_EQ(mesh.vertices, (std::vector<std::int32_t>{3, 2, 1, 0}));
 }
@@ -273,8 +272,7 @@ TEST(ExactCrossingsOfAdversaries, SpokesOfAWheel) {
   set.xy.insert(set.xy.end(), {0, 0, -0.3, -0.3, 0.3, -0.3, 0.3, 0.3, -0.3, 0.3});
   for (std::int32_t k = 0; k < 4; ++k) set.segments.push_back({spokes + 1 + k, spokes + 1 + (k + 1) % 4});
   const Deadline deadline(30);
-  const ExactMesh mesh =
-      constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
+  const ExactMesh mesh = triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
   EXPECT_EQ(mesh.parents.size(), static_cast<std::size_t>(spokes));
   EXPECT_EQ(constrained(mesh).size(), static_cast<std::size_t>(3 * spokes + 4));
 }
@@ -287,8 +285,7 @@ TEST(ExactCrossingsOfAdversaries, AnEdgeBetweenTwoRows) {
     for (std::int32_t i = 0; i < count; ++i)
       set.xy.insert(set.xy.end(), {1.0 * i, 0, 1.0 * i, 1 + bent * i * (count - i)});
     const Deadline deadline(4);
-    const ExactMesh mesh =
-        constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
+    const ExactMesh mesh = triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check());
     EXPECT_EQ(constrained(mesh), (Edges{{0, 1}}));
     expect_connected(mesh, "rows");
   }
@@ -332,9 +329,8 @@ TEST(ExactCrossingsOfAdversaries, AnEdgeBelowSlantedTeethIsStopped) {
     set.segments.push_back({v, v + 1});
   }
   const Deadline deadline(0.5);
-  EXPECT_THROW(
-      (void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check()),
-      Cancelled);
+  EXPECT_THROW((void)triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), 1, deadline.check()),
+               Cancelled);
   EXPECT_GE(deadline.told, 3U);
 }
 
@@ -351,8 +347,8 @@ TEST(ExactCrossings, AreStoppedByTheCallerWhoHearsOfThem) {
       ++told;
       source.request_stop();
     };
-    EXPECT_THROW((void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads,
-                                                               constraints::StopCheck(options, 0.5)),
+    EXPECT_THROW((void)triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads,
+                                                  constraints::StopCheck(options, 0.5)),
                  Cancelled);
     EXPECT_EQ(told, 1U);
   }

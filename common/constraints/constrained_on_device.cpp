@@ -20,7 +20,8 @@ DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const
   if (constraints.domain != Domain::seeds || data.triangle_count == 0) return locate_seeds({}, {}, {}, constraints);
   Device& device = *state->device;
   const auto triangles = device.read_values<std::int32_t>(*data.triangles, 3 * data.triangle_count);
-  if (!data.places) return locate_seeds(triangles, copy_segments(state, points, {}).doubles(), {}, constraints);
+  if (!data.places)
+    return locate_seeds(triangles, copy_segments(state, points, {}).doubles(), {}, constraints, state->options.stop);
   const auto xy = device.read_values<double>(*data.places, 2 * data.points);
   const std::size_t given = 2 * (data.points - data.added);
   const std::span<const double> all(xy);
@@ -31,7 +32,7 @@ DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const
     pairs = device.read_values<Segment>(*data.added_parents, data.added);
     added.segments = segments, added.pairs = pairs;
   }
-  return locate_seeds(triangles, PointsView(all.first(given)), added, constraints);
+  return locate_seeds(triangles, PointsView(all.first(given)), added, constraints, state->options.stop);
 }
 
 void add_domains(const State& state, const DevicePoints& points, const SegmentJob& job,

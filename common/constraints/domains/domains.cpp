@@ -280,7 +280,7 @@ HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const Segment
                          const ConstraintOptions& options) {
   HostDomains host;
   const std::size_t count = mesh.edge_flags.size();
-  const DomainSeeds seeds = locate_seeds(mesh.triangles, mesh.points, mesh.added, options);
+  const DomainSeeds seeds = locate_seeds(mesh.triangles, mesh.points, mesh.added, options, ctx.options.stop);
   if (count == 0) return host;
   const Allocation vertices = ctx.memory.import(mesh.triangles.data(), 3 * count * word),
                    neighbors = ctx.memory.import(mesh.neighbors.data(), 3 * count * word),

@@ -44,10 +44,11 @@ struct AddedPlaces {
   std::span<const Segment> segments, pairs;
 };
 /// Exact. A seed on an edge or a vertex is in the lowest triangle there. Vertices from points.size() on are those of
-/// `added`. O(triangles log seeds + boxes of triangles that have a seed). Nothing to do but with Domain::seeds.
-/// \throws OptionError for a seed that is not finite
+/// `added`. O((triangles + seeds) log seeds) expected. Nothing to do but with Domain::seeds. \throws OptionError for a
+/// seed that is not finite, Cancelled
 [[nodiscard]] DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points,
-                                       const AddedPlaces& added, const ConstraintOptions& options);
+                                       const AddedPlaces& added, const ConstraintOptions& options,
+                                       const stop_token& stop = {});
 
 /// Regions are numbered by their lowest triangles, from 0.
 struct Domains {

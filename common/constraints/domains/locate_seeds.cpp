@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of holes and regions. Seeds are few and triangles many, so each triangle looks for the seeds in its box.
+// Triangles of holes and regions. Seeds are few and triangles many, so each triangle looks for its seeds.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
 #include "common/constraints/domains/domains.hpp"
-#include "common/constraints/domains/seed_buckets.hpp"
+#include "common/constraints/domains/seed_tree.hpp"
 #include "common/constraints/exact/crossing_places.hpp"
+#include "common/constraints/stop_check.hpp"
 #include "common/verify/host/exact_sign.hpp"
 
 namespace cadt {
 namespace {
 
-using Place = SeedBuckets::Place;
+using Place = SeedTree::Place;
 
 void add_seed(std::vector<Place>& seeds, const char* option, std::size_t i, double x, double y) {
   if (!std::isfinite(x) || !std::isfinite(y))
@@ -36,7 +37,7 @@ bool contains_exactly(const constraints::CrossingPlaces& vertices, std::span<con
 }  // namespace
 
 DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points, const AddedPlaces& added,
-                         const ConstraintOptions& options) {
+                         const ConstraintOptions& options, const stop_token& stop) {
   DomainSeeds found;
   if (options.domain != Domain::seeds) return found;
   found.holes.assign(options.holes.size(), -1);
@@ -56,14 +57,12 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
     return {added.xy[2 * (i - points.size())], added.xy[2 * (i - points.size()) + 1]};
   };
   const constraints::CrossingPlaces crossings{points, added.segments, added.pairs};
-  const SeedBuckets buckets(seeds);
-  // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
+  const SeedTree tree(seeds);
   for (std::size_t t = 0; t < triangles.size() / 3; ++t) {
+    if (t % 4096 == 0) constraints::check(stop);
     const std::array<verifier::Point, 3> p = {point(triangles[3 * t]), point(triangles[3 * t + 1]),
                                               point(triangles[3 * t + 2])};
-    const auto [min_x, max_x] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [min_y, max_y] = std::minmax({p[0].y, p[1].y, p[2].y});
-    buckets.each_in({min_x, min_y}, {max_x, max_y}, [&](std::size_t i) {
+    tree.each_in({{{p[0].x, p[0].y}, {p[1].x, p[1].y}, {p[2].x, p[2].y}}}, [&](std::size_t i) {
       std::int32_t& triangle = i < found.holes.size() ? found.holes[i] : found.regions[i - found.holes.size()];
       if (triangle >= 0) return;
       const verifier::Point q = {seeds[i][0], seeds[i][1]};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/constraints/domains/seed_buckets.hpp"
+#include "common/constraints/domains/seed_tree.hpp"
 #include "common/constraints/exact/exact_number.hpp"
 #include "common/constraints/verify/verify_checks.hpp"
 
@@ -85,16 +85,13 @@ std::vector<std::int32_t> SeedTriangles::of(std::span<const Place> seeds) const 
     finite.push_back(seeds[i]);
     number.push_back(i);
   }
-  const SeedBuckets buckets(finite);
+  const SeedTree tree(finite);
   for (std::size_t t = 0; t < mesh_.mesh().number_of_triangles(); ++t) {
     const auto corners = mesh_.mesh().triangle(t);
     const Place a = places_.at(corners[0]), b = places_.at(corners[1]), c = places_.at(corners[2]);
-    // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
-    buckets.each_in({std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
-                    {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}, [&](std::size_t i) {
-                      if (found[number[i]] < 0 && contains(t, finite[i]))
-                        found[number[i]] = static_cast<std::int32_t>(t);
-                    });
+    tree.each_in({a, b, c}, [&](std::size_t i) {
+      if (found[number[i]] < 0 && contains(t, finite[i])) found[number[i]] = static_cast<std::int32_t>(t);
+    });
   }
   return found;
 }

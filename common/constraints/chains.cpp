@@ -27,6 +27,13 @@ void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std:
     if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
 }
 
+void refuse_segment(std::size_t s, const Segment& segment, std::size_t points) {
+  const bool first = segment[0] < 0 || static_cast<std::size_t>(segment[0]) >= points;
+  throw InputError("segment " + std::to_string(s) + " ends at point " + std::to_string(segment[first ? 0 : 1]) +
+                       ", but there are " + std::to_string(points) + " points",
+                   s);
+}
+
 void require_chain_length(std::size_t length) {
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
   if (length > most)
@@ -53,9 +60,7 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   for (std::size_t s = 0; s < segments.size(); ++s) {
     std::array<std::int32_t, 2> ends{};
     for (std::size_t e = 0; e < 2; ++e) {
-      if (segments[s][e] < 0 || segments[s][e] >= n)
-        throw InputError(
-            "segment " + std::to_string(s) + " has an end that is none of the " + std::to_string(n) + " points", s);
+      if (segments[s][e] < 0 || segments[s][e] >= n) refuse_segment(s, segments[s], points.size());
       ends[e] = rank[static_cast<std::size_t>(representative(data.mesh, segments[s][e]))];
     }
     const std::int32_t step = ends[0] < ends[1] ? 1 : -1;

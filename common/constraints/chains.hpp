@@ -18,6 +18,9 @@ void take_chains(ConstrainedTriangulation::Data& data, std::vector<std::int64_t>
 /// Devices count the vertices of all chains in a word. \throws LimitError
 void require_chain_length(std::size_t length);
 
+/// \throws InputError: segment `s` has an end that is none of so many points
+[[noreturn]] void refuse_segment(std::size_t s, const Segment& segment, std::size_t points);
+
 /// Chains of segments between points on a line, where `data.mesh` has no triangles. \throws InputError for the first
 /// segment with an end that is no point
 void chain_on_line(PointsView points, std::span<const Segment> segments, ConstrainedTriangulation::Data& data);

@@ -59,6 +59,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
                                       const ConstraintOptions& constraints) {
   require_size(points.size());
   require_segments(segments.size());
+  require_constants(constraints);
   auto data = std::make_shared<Data>();
   SegmentJob job;
   job.wants_crossings = constraints.crossing == Crossing::exact ? FindCrossings::places : FindCrossings::pairs;
@@ -122,6 +123,15 @@ void require_segments(std::size_t count) {
   if (count > most)
     throw LimitError("there are " + std::to_string(count) + " segments, more than " + std::to_string(most), count,
                      most);
+}
+
+void require_constants(const ConstraintOptions& options) {
+  const auto require = [](const char* name, int number, int last) {
+    if (number < 0 || number > last)
+      throw OptionError(name, "there is no constant of the number " + std::to_string(number), "ConstraintOptions::");
+  };
+  require("crossing", static_cast<int>(options.crossing), static_cast<int>(Crossing::grid));
+  require("domain", static_cast<int>(options.domain), static_cast<int>(Domain::seeds));
 }
 
 ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,

@@ -53,9 +53,7 @@ class Constrainer {
                                                      patches, words_);
     if (sorted) launch_.sort(patches, order_, spare, spare_order, job_.count, bits, true);
     if (const std::uint32_t bad = launch_.read_word(words_, CADT_SEGMENTS_BAD_INDEX); bad != CADT_NONE)
-      throw InputError(
-          "segment " + std::to_string(bad) + " has an end that is none of the " + std::to_string(points) + " points",
-          bad);
+      refuse_segment(bad, ctx_.device.read_values<Segment>(*job_.segments, 1, bad).front(), points);
     ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
     points_ = points;
     vertices_ = distinct;

@@ -56,6 +56,8 @@ struct SegmentResults {
 
 /// \throws LimitError
 void require_segments(std::size_t count);
+/// \throws OptionError for a number that is no constant
+void require_constants(const ConstraintOptions& options);
 
 /// Duplicates of input points and what they equal; null if there are none.
 struct DuplicateLists {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/constraints/crossings/arrangement.hpp"
 
+#include "common/constraints/chains.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -55,10 +57,7 @@ Arrangement sort_segments(PointsView points, std::span<const Segment> segments) 
   sorted.reserve(segments.size());
   for (std::size_t s = 0; s < segments.size(); ++s) {
     for (const std::int32_t end : segments[s])
-      if (end < 0 || static_cast<std::size_t>(end) >= points.size())
-        throw InputError("segment " + std::to_string(s) + " ends at point " + std::to_string(end) + ", but there are " +
-                             std::to_string(points.size()) + " points",
-                         s);
+      if (end < 0 || static_cast<std::size_t>(end) >= points.size()) refuse_segment(s, segments[s], points.size());
     const auto [a, b] = std::minmax(out.rank[static_cast<std::size_t>(segments[s][0])],
                                     out.rank[static_cast<std::size_t>(segments[s][1])]);
     if (a != b) sorted.push_back({a, b, static_cast<std::int32_t>(s)});

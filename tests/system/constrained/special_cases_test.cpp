@@ -86,8 +86,27 @@ TEST_P(SpecialCases, BadIndex) {
           ADD_FAILURE() << "no error";
         } catch (const InputError& error) {
           EXPECT_EQ(error.index(), expected) << error.what();
+          const std::int32_t named = n > 0 ? bad : first ? bad : segments[expected][0];
+          EXPECT_EQ(error.what(), "segment " + std::to_string(expected) + " ends at point " + std::to_string(named) +
+                                      ", but there are " + std::to_string(n) + " points");
         }
       }
+    }
+  }
+}
+
+TEST_P(SpecialCases, ConstantsThatThereAreNot) {
+  const Points xy = uniform_points(20, 4);
+  const std::vector<Segment> segments = {{0, 1}};
+  ConstraintOptions crossing, domain;
+  crossing.crossing = static_cast<Crossing>(9);
+  domain.domain = static_cast<Domain>(-1);
+  for (const auto& [options, name] : {std::pair(crossing, "crossing"), std::pair(domain, "domain")}) {
+    try {
+      (void)triangulate_constrained(std::span<const double>(xy), segments, options, GetParam().options());
+      ADD_FAILURE() << name;
+    } catch (const OptionError& error) {
+      EXPECT_EQ(error.option(), name);
     }
   }
 }

@@ -151,8 +151,9 @@ struct Options {
   /// Source of device memory. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  /// Checked between launches, and while crossings of segments are found; once triggered, the call throws Cancelled.
-  /// std::stop_token where the standard library has it.
+  /// Checked between launches, which take a second or more on CPUs where millions of segments cross or millions of
+  /// queries are asked, and during work on the host; once triggered, the call throws Cancelled. std::stop_token where
+  /// the standard library has it.
   cadt::stop_token stop;
   /// Called on the calling thread between launches. Must not throw.
   std::function<void(const Progress&)> progress;

@@ -222,27 +222,6 @@ def test_masked(masked: Any) -> None:
         cadt.Delaunay(P).interpolate(np.ma.array(P[:, 0], mask=P[:, 0] > 0.5), P)
 
 
-def test_the_way_out_of_a_mask_and_of_three_columns() -> None:
-    a = np.ma.array(P, mask=P > 0.9)
-    with pytest.raises(InputError, match=r"pass np.ma.compress_rows\(points\), which are the rows without"):
-        cadt.Delaunay(a)
-    assert cadt.Delaunay(np.ma.compress_rows(a)).n_points == (P <= 0.9).all(axis=1).sum()
-    for call in (cadt.Delaunay, lambda xyz: cadt.find_crossings(xyz, [[0, 1]])):
-        with pytest.raises(InputError, match=r"not \(50, 3\); pass points\[:, :2\], and heights as values"):
-            call(np.zeros((50, 3)))
-        with pytest.raises(InputError, match=r"not \(2, 50\); pass points.T"):
-            call(P[:50].T)
-        with pytest.raises(InputError, match=r"not \(50, 4\); cadt.scipy.Delaunay takes more dimensions"):
-            call(np.zeros((50, 4)))
-    with pytest.raises(InputError, match=r"; of colours make numbers: labels\[..., :3\] @ \[65536, 256, 1\]"):
-        cadt.label_segments(np.zeros((4, 5, 3), np.uint8))
-    colours = np.zeros((4, 5, 4), np.uint8)
-    colours[1:, :2] = [1, 2, 3, 255]
-    assert set(cadt.label_segments(colours[..., :3] @ [65536, 256, 1]).sides.flat) == {0, 0x010203, -(2**31)}
-    with pytest.raises(InputError, match=r"the label 4294967296 of pixel \(1, 2\) does not fit"):
-        cadt.label_segments([[0, 0, 0], [0, 0, 2**32]])
-
-
 def test_masked_indices() -> None:
     two = [[0, 1, 2], [1, 3, 2]]
     masked = np.ma.array(two, mask=[[False] * 3, [True] * 3])

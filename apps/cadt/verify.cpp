@@ -55,9 +55,8 @@ const char* advice(const VerifyReport& report) {
     return check.passed || std::ranges::find(names, check.name) != names.end();
   };
   return std::ranges::all_of(report.checks, of_segments)
-             ? "a mesh with segments is not Delaunay at them, and that of a domain ends at others than the edges of "
-               "the "
-               "hull: check it with `cadt triangulate IN --verify`"
+             ? "a mesh with segments, or of a domain, is not that of its points alone: check it with `cadt triangulate "
+               "IN --verify`"
              : "if many checks fail, see whether both files belong together, and --base, --columns and --project";
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/constraints/exact_mesh/exact_crossings.hpp"
 
+#include "common/constraints/chains.hpp"
 #include "common/constraints/exact_mesh/mesh_editor.hpp"
 #include "common/constraints/stop_check.hpp"
 #include "common/platform/parallel.hpp"
@@ -88,6 +89,13 @@ DividedSegments divide_segments(const Arrangement& in, std::span<const Segment> 
     out.parents.push_back(in.parents[i]);
   }
 
+  std::size_t length = 0;
+  for (const std::int32_t s : in.segment_of)
+    if (s >= 0)
+      length += static_cast<std::size_t>(in.segment_last[static_cast<std::size_t>(s)] -
+                                         in.segment_first[static_cast<std::size_t>(s)] + 1);
+  require_chain_length(length);
+  out.vertices.reserve(length);
   out.offsets.assign(segments.size() + 1, 0);
   for (std::size_t s = 0; s < segments.size(); ++s) {
     if (in.segment_of[s] >= 0) {

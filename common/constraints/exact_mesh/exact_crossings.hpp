@@ -24,7 +24,7 @@ struct DividedSegments {
   std::vector<std::int32_t> vertices;  ///< from offsets[s] to offsets[s + 1] - 1; none if its ends are equal
   std::vector<std::int32_t> number;    ///< of each vertex of the arrangement
 };
-/// O(n log n + length of chains).
+/// O(n log n + length of chains). \throws LimitError if these have too many vertices
 [[nodiscard]] DividedSegments divide_segments(const Arrangement& in, std::span<const Segment> segments);
 
 struct ExactMesh {

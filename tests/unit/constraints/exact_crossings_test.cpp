@@ -334,6 +334,18 @@ TEST(ExactCrossingsOfAdversaries, AnEdgeBelowSlantedTeethIsStopped) {
   EXPECT_GE(deadline.told, 3U);
 }
 
+/// All segments from the first point of a line to each other one: it is known what they have before it is listed.
+TEST(ExactCrossings, ChainsThatAreTooLongAreRefusedAtOnce) {
+  constexpr std::int32_t count = 93000;  // more than 2^32 vertices along segments
+  SegmentSet set{"", {}, {}};
+  for (std::int32_t i = 0; i <= count; ++i) {
+    set.xy.insert(set.xy.end(), {1.0 * i, 0.0});
+    if (i > 0) set.segments.push_back({0, i});
+  }
+  const constraints::Arrangement in = constraints::arrange(set.xy, set.segments, 1);
+  EXPECT_THROW((void)constraints::divide_segments(in, set.segments), LimitError);
+}
+
 TEST(ExactCrossings, AreStoppedByTheCallerWhoHearsOfThem) {
   const SegmentSet set = random_segments(7, 300, 0.5);
   for (const unsigned threads : {1U, 3U}) {

@@ -173,6 +173,28 @@ FoundCrossings upload_crossings(Memory& memory, PointsView points, const constra
   return found;
 }
 
+/// With crossings that the host finds. `tries_rounded`: whether a mesh of rounded places may be the one. If the device
+/// has no memory for it, it is not tried: the host inserts with its own.
+void constrain_by_sweep(const State& state, PointsView points, std::span<const Segment> segments, bool tries_rounded,
+                        Data& data) {
+  const unsigned threads = state->options.threads;
+  const constraints::StopCheck check_stop(state->options, 1);
+  const constraints::Arrangement in = constraints::arrange(points, segments, threads, check_stop);
+  constraints::DividedSegments divided = constraints::divide_segments(in, segments);
+  if (tries_rounded && suits_device(*state->device, divided)) try {
+      if (constrain_rounded(state, points, segments, upload_crossings(state->memory, points, divided), data)) return;
+    } catch (const OutOfMemory&) {
+    }
+  const Triangulation delaunay = triangulate_on_host(state, points);
+  const constraints::ExactMesh exact =
+      constraints::triangulate_with_crossings(in, divided.number, delaunay, threads, check_stop);
+  data.mesh = triangulation_of(delaunay, exact, divided.added_xy, data.edge_flags);
+  data.added = std::move(divided.added_xy);
+  data.parents = std::move(divided.parents);
+  data.rounded_valid = exact.rounded_valid;
+  take_chains(data, std::move(divided.offsets), std::move(divided.vertices));
+}
+
 }  // namespace
 
 void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
@@ -199,31 +221,18 @@ void constrain_exactly(const State& state, PointsView points, std::span<const Se
                        std::optional<FoundCrossings> found, Data& data) {
   const bool placed = found && found->places;  // by the device
   if (placed && constrain_rounded(state, points, segments, std::move(*found), data)) return;
-  const unsigned threads = state->options.threads;
-  const constraints::StopCheck check_stop(state->options, 1);
-  const constraints::Arrangement in = constraints::arrange(points, segments, threads, check_stop);
-  constraints::DividedSegments divided = constraints::divide_segments(in, segments);
-  if (!placed && suits_device(*state->device, divided) &&
-      constrain_rounded(state, points, segments, upload_crossings(state->memory, points, divided), data))
-    return;
-  const Triangulation delaunay = triangulate_on_host(state, points);
-  const constraints::ExactMesh exact =
-      constraints::triangulate_with_crossings(in, divided.number, delaunay, threads, check_stop);
-  data.mesh = triangulation_of(delaunay, exact, divided.added_xy, data.edge_flags);
-  data.added = std::move(divided.added_xy);
-  data.parents = std::move(divided.parents);
-  data.rounded_valid = exact.rounded_valid;
-  take_chains(data, std::move(divided.offsets), std::move(divided.vertices));
+  constrain_by_sweep(state, points, segments, !placed, data);
 }
 
 DeviceMesh constrain_exactly(const State& state, const DevicePoints& points, SegmentJob job) {
-  if (job.crossings && job.crossings->places) {
+  const bool placed = job.crossings && job.crossings->places;
+  if (placed) {
     FoundCrossings found = std::move(*job.crossings);
     if (DeviceMesh mesh = constrain_rounded(state, points.size, job, found)) return mesh;
   }
   const CopiedSegments copied = copy_segments(state, points, job);
   Data mesh;
-  constrain_exactly(state, copied.points(), copied.segments, std::nullopt, mesh);
+  constrain_by_sweep(state, copied.points(), copied.segments, !placed, mesh);
   return upload_mesh(state, copied.doubles(), mesh);
 }
 

@@ -190,9 +190,9 @@ class CADT_API ConstrainedTriangulation {
                                                                                const Options& options = {});
 
 /// Values of the input points, `columns` of them a point, and behind them those of added_points(): linear along the
-/// first of their two segments (added_parents), at their rounded places, from the nearest input point before them to the
-/// nearest one behind.
-/// O(values + length of chains). \throws InputError if there are not `columns` values for each of the points
+/// first of their two segments (added_parents), at their rounded places, from the nearest input point before them to
+/// the nearest one behind. O(values + length of chains). \throws InputError if there are not `columns` values for each
+/// of the points
 [[nodiscard]] CADT_API std::vector<double> values_at_crossings(PointsView points, std::span<const double> values,
                                                                std::size_t columns,
                                                                const ConstrainedTriangulation& mesh);

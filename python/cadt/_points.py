@@ -79,7 +79,8 @@ def as_array(a: Any, what: str, form: str, advice: str = "") -> np.ndarray:
 
 def to_array(points: Any, what: str) -> np.ndarray:
     """Lists, anything with ``__array__`` or, on the host, ``__dlpack__``."""
-    points = unmasked(points, what, f"pass np.ma.compress_rows({what}), which are the rows without a mask")
+    rows = f"pass np.ma.compress_rows({what}), which are the rows without a mask" if np.ndim(points) == 2 else ""
+    points = unmasked(points, what, rows)
     if isinstance(points, (list, tuple)) or hasattr(points, "__array__"):
         try:
             return _of_columns(points, np.asarray(points), what)

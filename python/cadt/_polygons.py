@@ -173,7 +173,7 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     if isinstance(geometry, (list, tuple, np.ndarray)):
         in_wkb = [isinstance(g, (bytes, bytearray, memoryview)) for g in geometry]
         missing = [type(g).__name__ in ("NoneType", "NAType") or (isinstance(g, float) and g != g) for g in geometry]
-        if all(map(operator.or_, in_wkb, missing)) and not (missing and all(missing)):
+        if all(map(operator.or_, in_wkb, missing)) and (any(in_wkb) or not in_wkb):
             in_rows = [_EMPTY if gone else g for g, gone in zip(geometry, missing)]
             points, rings, polygons_ = lines_of_wkb(in_rows, (POLYGON, MULTIPOLYGON))
             return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, crs
@@ -183,6 +183,7 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
             raise InputError(
                 f"geometry {first} is a {kind}: pass WKB bytes of all polygons in a list, an array or a Series", first
             )
+        geometry = [None if gone else g for g, gone in zip(geometry, missing)]
     shapely = _show._need("shapely", "shapely")
     rows = np.atleast_1d(np.asarray(geometry, dtype=object))
     if rows.ndim != 1 or not (shapely.is_geometry(rows) | shapely.is_missing(rows)).all():

@@ -127,6 +127,8 @@ def test_the_way_out_of_a_mask_and_of_three_columns() -> None:
     with pytest.raises(InputError, match=r"pass np.ma.compress_rows\(points\), which are the rows without"):
         cadt.Delaunay(a)
     assert cadt.Delaunay(np.ma.compress_rows(a)).n_points == (P <= 0.9).all(axis=1).sum()
+    with pytest.raises(InputError, match="queries are masked: pass queries without a mask"):
+        cadt.Delaunay(P).find_simplex(np.ma.array([0.5, 0.5], mask=[False, True]))
     for call in (cadt.Delaunay, lambda xyz: cadt.find_crossings(xyz, [[0, 1]])):
         with pytest.raises(InputError, match=r"not \(50, 3\); pass points\[:, :2\], and heights as values"):
             call(np.zeros((50, 3)))

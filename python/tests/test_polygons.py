@@ -191,7 +191,7 @@ def geometries() -> Any:
 def test_shapely() -> None:
     shapely = pytest.importorskip("shapely")
     rows = geometries()
-    for given in (rows, np.array(rows, dtype=object), tuple(rows)):
+    for given in (rows, np.array(rows, dtype=object), tuple(rows), [*rows[:2], float("nan"), rows[3]]):
         result = cadt.polygons(given)
         assert areas(result).tolist() == [8, 9, 0, 0]
         assert [p.reason for p in result.problems] == ["too few points", "self-crossing"]

@@ -82,7 +82,7 @@ std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, c
     check_stop();
     const auto first = static_cast<std::size_t>(in.member_offsets[c]);
     const auto last = static_cast<std::size_t>(in.member_offsets[c + 1]);
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = first; i < last; check_stop(), ++i)
       for (std::size_t j = i + 1; j < last; ++j)
         for (std::size_t s = begins[i]; s < ends[i]; ++s)
           for (std::size_t t = begins[j]; t < ends[j]; ++t)

@@ -149,6 +149,13 @@ def _feature_of(lines: Breaklines, points: NDArray[np.integer]) -> NDArray[np.in
     return lines.feature[np.searchsorted(lines.offsets, points, side="right") - 1]
 
 
+def _begins_of_segments(lines: Breaklines) -> NDArray[np.intp]:
+    """The first point of each segment: all points that are not the last one of their line."""
+    ends = np.zeros(len(lines.xyz), bool)
+    ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
+    return np.flatnonzero(~ends)
+
+
 def _several_heights(lines: Breaklines, z: NDArray[np.float64], first_of: NDArray[np.integer]) -> str:
     """Of points of lines at the same place those whose heights differ, in words; `first_of`: the first one, or -1."""
     second = np.flatnonzero(first_of[: len(z)] >= 0)
@@ -182,17 +189,19 @@ def _heights_on_segments(lines: Breaklines, mesh: cadt.ConstrainedDelaunay, z: N
     given = np.isfinite(lines.xyz[:, 2])
     of_file = given[a] & given[b]
     n = len(lines.xyz)
-    z[v[(v >= n) & of_file]] = height[(v >= n) & of_file]
+    of_cloud = np.flatnonzero((v >= n) & of_file)[::-1]
+    z[v[of_cloud]] = height[of_cloud]  # of several lines along each other the first one counts
     off = np.abs(z[v] - height)
     off[(v >= n) | ~(of_file | given[np.minimum(v, n - 1)])] = 0
     wrong = off > 1e-9 * (np.abs(z[v]) + np.abs(height))
     if not wrong.any():
         return ""
-    worst = int(np.argmax(off))
-    point, other = _feature_of(lines, np.array([v[worst], a[worst]]))
+    worst = int(np.argmax(np.where(wrong, off, 0)))
+    begins = _begins_of_segments(lines)
+    point, other = _feature_of(lines, np.array([v[worst], begins[segment[worst]]]))
     x, y = p[v[worst]]
     others = len(np.unique(v[wrong])) - 1
-    more = f"; {others} more place{'s differ' if others > 1 else ' differs'} by less" if others else ""
+    more = f"; {others} more place{'s differ' if others > 1 else ' differs'} by no more" if others else ""
     return (
         f"feature {point} (counted from 0) has the height {z[v[worst]]:.12g} at {x:.12g} {y:.12g}, on a segment of feature "
         f"{other} with the height {height[worst]:.12g} there{more}; the point keeps its height"
@@ -200,10 +209,7 @@ def _heights_on_segments(lines: Breaklines, mesh: cadt.ConstrainedDelaunay, z: N
 
 
 def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
-    # Segments begin at all points that are not the last one of their line.
-    ends = np.zeros(len(lines.xyz), bool)
-    ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
-    begin = np.flatnonzero(~ends)[list(pairs[0])]
+    begin = _begins_of_segments(lines)[list(pairs[0])]
     of = _feature_of(lines, begin)
     first, last = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
     ax, ay, cx, cy, bx, by, dx, dy = (Fraction(v) for v in [*first.flat, *last.flat])

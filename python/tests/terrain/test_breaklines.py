@@ -140,8 +140,12 @@ def test_heights_of_points_on_segments(las, tmp_path, cadt_terrain):
     err, _ = run(slope, above, beside)
     assert (
         "warning: lines.gpkg: feature 1 (counted from 0) has the height 9 at 500020 5400050, on a segment of feature 0 with "
-        "the height 2 there; 1 more place differs by less; the point keeps its height" in err
+        "the height 2 there; 1 more place differs by no more; the point keeps its height" in err
     )
+    err, _ = run(line((0, 50, 0), (0, 80, 0)), slope, line((50, 50, 9), (50, 90, 0)))  # two that begin at one place
+    assert "feature 2 (counted from 0) has the height 9 at 500050 5400050, on a segment of feature 1 with the height 5" in err
+    low = line((0, 50, 0), (100, 50, 1))
+    assert run(slope, low)[1][50].max() > 9 > run(low, slope)[1][50, 60]
     err, _ = run(slope, line((30, 50, 3), (60, 50, 0), (80, 50, 8)))  # along it
     assert "feature 1 (counted from 0) has the height 0 at 500060 5400050, on a segment of feature 0 with" in err
 

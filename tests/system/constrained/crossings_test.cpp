@@ -326,6 +326,26 @@ TEST_P(Crossings, SeveralAtOnePlace) {
   expect_pairs(set);
 }
 
+/// Where the device has no memory for the crossings that the host finds, the host makes the mesh with its own.
+TEST_P(Crossings, WithoutMemoryForThemOnTheDevice) {
+  SegmentSet set{"all cross", {}, {}};
+  constexpr int n = 300;
+  for (int i = 0; i < n; ++i) {
+    const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+    set.xy.insert(set.xy.end(), {0, 1.0 * i, 1000, n - i + 1.0 / (i + 2)});
+    set.segments.push_back({v, v + 1});
+  }
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  Options options = GetParam().options();
+  const ConstrainedTriangulation expected = triangulate_constrained(set.xy, set.segments, constraints, options);
+  EXPECT_EQ(expected.added_parents().size(), std::size_t{n * (n - 1) / 2});
+  options.max_memory = std::size_t{3} << 20;
+  const ConstrainedTriangulation mesh = triangulate_constrained(set.xy, set.segments, constraints, options);
+  EXPECT_EQ(mesh.hash(), expected.hash());
+  EXPECT_LE(mesh.statistics().bytes_device_peak, options.max_memory);
+}
+
 /// A hatch and one slanted segment across it: with exact places alone, each triangle of a fan takes as long as the fan.
 TEST_P(Crossings, HatchIsDoneInRoundedPlaces) {
   if (!has_doubles()) GTEST_SKIP() << "the host makes the mesh with exact places alone";

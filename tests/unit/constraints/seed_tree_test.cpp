@@ -33,8 +33,8 @@ TEST(SeedTree, FindsThePlacesInTriangles) {
   const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
   std::size_t all = 0;
   for (const std::size_t count : {1U, 2U, 5U, 40U, 300U})
-    for (const Place& scale : {Place{1, 1}, Place{1e-3, 1e6}, Place{most, most}, Place{least * 8, most},
-                               Place{least * 8, least * 8}, Place{1 + 1e-16, 1e-12}}) {
+    for (const Place& scale :
+         {Place{1, 1}, Place{1e-3, 1e6}, Place{most, most}, Place{least * 8, most}, Place{least * 8, least * 8}}) {
       // Of few different numbers, so that places lie on borders of triangles, of cells, and on one another.
       const auto value = [&](std::size_t k) { return (static_cast<double>(random() % 17) / 8 - 1) * scale[k]; };
       std::vector<Place> places(count);
@@ -55,8 +55,50 @@ TEST(SeedTree, FindsThePlacesInTriangles) {
         for (const std::size_t i : found) ASSERT_TRUE(places[i][0] >= left && places[i][0] <= right);
       }
     }
-  EXPECT_GT(all, 30000U);
+  EXPECT_GT(all, 20000U);
   EXPECT_TRUE(found_in(SeedTree({}), {{{0, 0}, {1, 0}, {0, 1}}}).empty());
+}
+
+/// Corners are whole numbers of which only each fourth is a double: what lies in the exact triangle is found with the
+/// rounded one.
+TEST(SeedTree, FindsThePlacesInTrianglesOfRoundedCorners) {
+  using Whole = std::array<std::int64_t, 2>;
+  constexpr std::int64_t far = std::int64_t{1} << 54;
+  std::mt19937_64 random(6);
+  std::size_t all = 0, beside = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const auto value = [&] { return static_cast<std::int64_t>(random() % 40) * 4; };
+    const auto near = [&] { return static_cast<std::int64_t>(random() % 3) - 1; };
+    std::vector<Whole> exact(60);
+    std::vector<Place> places(exact.size());
+    for (std::size_t i = 0; i < exact.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k) {
+        exact[i][k] = value();
+        places[i][k] = static_cast<double>(far + exact[i][k]);
+      }
+    std::array<Whole, 3> corners{};
+    for (Whole& corner : corners) corner = {value() + near(), value() + near()};
+    const auto area = [](const Whole& a, const Whole& b, const Whole& c) {
+      return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    };
+    if (area(corners[0], corners[1], corners[2]) == 0) continue;
+    if (area(corners[0], corners[1], corners[2]) < 0) std::swap(corners[1], corners[2]);
+    Triangle rounded{};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 2; ++k) rounded[c][k] = static_cast<double>(far + corners[c][k]);
+    const SeedTree tree(places);
+    const auto found = found_in(tree, rounded);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool inside = area(corners[0], corners[1], exact[i]) >= 0 && area(corners[1], corners[2], exact[i]) >= 0 &&
+                          area(corners[2], corners[0], exact[i]) >= 0;
+      if (!inside) continue;
+      ++all;
+      if (!contains(rounded, places[i])) ++beside;
+      ASSERT_TRUE(std::ranges::binary_search(found, i)) << round;
+    }
+  }
+  EXPECT_GT(all, 10000U);
+  EXPECT_GT(beside, 100U);
 }
 
 /// Neither a place far from all others nor triangles whose boxes hold most of the places make it look at many.

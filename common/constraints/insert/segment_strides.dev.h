@@ -121,8 +121,15 @@ CADT_KERNEL(cadt_probe_pieces, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMET
     if (t == CADT_NONE) continue;
     cadt_i32 side[3];
     for (cadt_u32 k = 0u; k < 3u; ++k) side[k] = cadt_side_of(&mesh, p, q, cadt_corner_of(&mesh, t, k), &counters);
-    for (cadt_u32 k = 0u; k < 3u; ++k)
-      if (side[CADT_NEXT(k)] < 0 && side[CADT_PREV(k)] > 0) strides.start[i] = CADT_HALF_EDGE(t, k);
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      if (side[CADT_NEXT(k)] >= 0 || side[CADT_PREV(k)] <= 0) continue;
+      /* The line leaves by this edge; so does the piece if its ends are on both sides. A walk from beyond an end would
+       * leave the mesh. */
+      const cadt_point v = cadt_load_point(mesh.points + cadt_corner_of(&mesh, t, CADT_NEXT(k))),
+                       w = cadt_load_point(mesh.points + cadt_corner_of(&mesh, t, CADT_PREV(k)));
+      if (cadt_orientation(v, w, p, &counters) > 0 && cadt_orientation(v, w, q, &counters) < 0)
+        strides.start[i] = CADT_HALF_EDGE(t, k);
+    }
   }
 }
 

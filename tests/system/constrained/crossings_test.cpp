@@ -326,7 +326,8 @@ TEST_P(Crossings, SeveralAtOnePlace) {
   expect_pairs(set);
 }
 
-/// Where the device has no memory for the crossings that the host finds, the host makes the mesh with its own.
+/// Where the device has no memory for the crossings that the host finds, the host makes the mesh with its own. (Pieces
+/// are so close that probes of long ones find triangles beyond their ends, too.)
 TEST_P(Crossings, WithoutMemoryForThemOnTheDevice) {
   SegmentSet set{"all cross", {}, {}};
   constexpr int n = 300;
@@ -340,7 +341,7 @@ TEST_P(Crossings, WithoutMemoryForThemOnTheDevice) {
   Options options = GetParam().options();
   const ConstrainedTriangulation expected = triangulate_constrained(set.xy, set.segments, constraints, options);
   EXPECT_EQ(expected.added_parents().size(), std::size_t{n * (n - 1) / 2});
-  options.max_memory = std::size_t{3} << 20;
+  options.max_memory = std::size_t{6} << 20;
   const ConstrainedTriangulation mesh = triangulate_constrained(set.xy, set.segments, constraints, options);
   EXPECT_EQ(mesh.hash(), expected.hash());
   EXPECT_LE(mesh.statistics().bytes_device_peak, options.max_memory);

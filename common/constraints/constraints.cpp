@@ -143,7 +143,8 @@ class Constrainer {
     require_sound(found[CADT_SEGMENTS_BROKEN]);
     job_.divided = found[CADT_SEGMENTS_MORE_LOW] != 0 || found[CADT_SEGMENTS_MORE_HIGH] != 0;
     if (!job_.wants_chains) return;
-    require_countable();
+    require_chain_length(2 * job_.count + (std::uint64_t{found[CADT_SEGMENTS_MORE_HIGH]} << 32) +
+                         found[CADT_SEGMENTS_MORE_LOW]);
     launch_.scan(offsets, job_.count + 1);
     job_.chain_length = launch_.read_word(offsets, job_.count);
     job_.chains = ctx_.memory.allocate(std::max<std::size_t>(job_.chain_length, 1) * word);
@@ -184,13 +185,6 @@ class Constrainer {
     // More long pieces at a time would not stay in the caches of CPUs.
     const bool more = !shape.contiguous || places_ <= std::size_t{shape.parallelism} * 512;
     return std::max(more && 4 * waiting <= tried ? 2 * won : won, least);
-  }
-
-  /// \throws LimitError if a word cannot hold the number of all vertices of chains
-  void require_countable() {
-    const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
-    require_chain_length(2 * job_.count + (std::uint64_t{found[CADT_SEGMENTS_MORE_HIGH]} << 32) +
-                         found[CADT_SEGMENTS_MORE_LOW]);
   }
 
   static void require_sound(std::uint32_t broken) {

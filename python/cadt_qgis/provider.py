@@ -23,6 +23,7 @@ from qgis.core import (
 
 PROGRAM = "CADT_PROGRAM"
 METHODS = ("linear", "nearest", "natural")
+LINES = "Lines and polygons (*.gpkg *.geojson *.fgb *.shp)"
 POINTS = "Points (*.las *.laz *.LAS *.LAZ *.gpkg *.geojson *.fgb *.parquet *.xyz *.csv *.txt)"
 
 
@@ -59,6 +60,7 @@ class CadtAlgorithm(QgsProcessingAlgorithm):
         self.addParameter(QgsProcessingParameterString("CLASS", "Classes (2: ground), all if empty", optional=True))
         self.number("MAX_EDGE", "Longest edge of a triangle", optional=True)
         self.addParameter(QgsProcessingParameterString("CRS", "Reference system, if the file has none", optional=True))
+        self.addParameter(QgsProcessingParameterFile("BREAKLINES", "Breaklines", fileFilter=LINES, optional=True))
         self.own_parameters()
 
     def number(self, name, text, optional=False, default=None):
@@ -71,6 +73,8 @@ class CadtAlgorithm(QgsProcessingAlgorithm):
         for name, option in (("CLASS", "--class"), ("CRS", "--crs")):
             if value := self.parameterAsString(parameters, name, context).strip():
                 words += [option, value]
+        if lines := self.parameterAsFile(parameters, "BREAKLINES", context):
+            words += ["--breaklines", lines]
         if parameters.get("MAX_EDGE") is not None:
             words += ["--max-edge", repr(self.parameterAsDouble(parameters, "MAX_EDGE", context))]
         words += self.own_words(parameters, context)

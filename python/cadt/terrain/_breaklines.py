@@ -15,7 +15,7 @@ import cadt
 from cadt._wkb import LINE, MULTILINE, MULTIPOLYGON, POLYGON, lines_of_wkb
 
 from ._files import check_input, suffix_of, why
-from ._mesh import triangulate
+from ._mesh import no_triangles, triangulate
 from ._progress import ProgressLine
 from ._vector import _pyogrio, errors_of, only_layer, parse_crs, truncated
 from .cloud import Cloud, name_of, same_crs
@@ -35,16 +35,19 @@ class Breaklines:
     feature: NDArray[np.int64]
 
 
-def check_options(options: argparse.Namespace) -> None:
-    if options.method != "linear":
-        raise UsageError(f"--breaklines: --method {options.method} takes no notice of lines; leave it out")
-    if options.scratch is not None:
-        raise UsageError("--breaklines: with --scratch there are none; use fewer points, or leave one of both out")
+def check_file(options: argparse.Namespace) -> None:
+    if options.breaklines is None:
+        return
     if suffix_of(options.breaklines) not in READ_FORMATS:
         raise UsageError(
             f"--breaklines {options.breaklines}: lines are read from files that end in: {', '.join(READ_FORMATS)}"
         )
     check_input(options.breaklines)
+
+
+def inputs_of(options: argparse.Namespace) -> list[str]:
+    """All files that are read, none of which the output may be."""
+    return [*options.inputs, *([options.breaklines] if options.breaklines is not None else [])]
 
 
 def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
@@ -103,16 +106,28 @@ def leave_out_far(lines: Breaklines, cloud: Cloud, line: ProgressLine) -> Breakl
 
 
 @dataclasses.dataclass(frozen=True)
-class Broken:
-    """Points and breaklines as one mesh; the vertices of the lines come first, in the order of the file: the first height
-    at a place counts, and where a point of the cloud lies on a line with heights, that of the line."""
+class Terrain:
+    """The mesh of points, and of breaklines if there are some, with a height for each vertex. The vertices of the lines come
+    first, in the order of the file: the first height at a place counts, and where a point of the cloud lies on a line with
+    heights, that of the line."""
 
-    mesh: cadt.ConstrainedDelaunay
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay
     z: NDArray[np.float64]
-    heights: str  # where those of the lines come from
+    said: dict[str, object]  # of the lines, for the summary
 
 
-def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace, line: ProgressLine) -> Broken:
+def terrain_of(cloud: Cloud, options: argparse.Namespace, line: ProgressLine) -> Terrain:
+    name = ", ".join(cloud.sources)
+    if options.breaklines is None:
+        return Terrain(triangulate(cloud.xy, name, options, line), cloud.z, {})
+    lines = leave_out_far(read_breaklines(options.breaklines, cloud, options.crs), cloud, line)
+    terrain = add_breaklines(cloud, lines, options, line)
+    if terrain.mesh.n_triangles == 0:
+        raise no_triangles(name, len(cloud))
+    return terrain
+
+
+def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace, line: ProgressLine) -> Terrain:
     """Raises FileError if lines cross; warns if they have several heights at a place."""
     z = lines.xyz[:, 2].copy()
     missing = np.flatnonzero(np.isnan(z))
@@ -142,7 +157,8 @@ def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace,
     heights = "the points" if len(missing) == len(z) else "the file"
     if 0 < len(missing) < len(z):
         heights = f"the file, but {len(missing)} from the points"
-    return Broken(mesh, all_z, heights)
+    said = f"{len(lines.offsets) - 1}, with {len(lines.xyz)} points; heights of {heights}"
+    return Terrain(mesh, all_z, {"breaklines": said})
 
 
 def _feature_of(lines: Breaklines, points: NDArray[np.integer]) -> NDArray[np.int64]:

@@ -71,7 +71,9 @@ def rasterize(
     return np.asarray(cells).reshape(grid.rows, grid.columns)
 
 
-def kept_triangles(mesh: cadt.Delaunay, max_edge: float | None, name: str | None = None) -> NDArray[np.int64] | None:
+def kept_triangles(
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay, max_edge: float | None, name: str | None = None
+) -> NDArray[np.int64] | None:
     """Triangles without an edge longer than `max_edge`; None: all of them.
 
     Raises

@@ -51,6 +51,8 @@ Examples:
       a line each 5 metres of height, with the attribute elevation
   cadt contour scan.laz lines.fgb --interval 1 --base 0.5 --max-edge 50
       at 0.5, 1.5, 2.5 ...; none through triangles with edges over 50
+  cadt contour scan.laz lines.gpkg --interval 1 --class 2,9 --breaklines lakes.gpkg
+      they bend at banks and shores, as the triangles do
 
 The lines are those of the triangles themselves, so that they pass exactly through the surface that `cadt raster` samples.
 Higher ground is on the left. For lines of a raster use gdal_contour.
@@ -63,6 +65,8 @@ Examples:
       for browsers and Blender
   cadt tin survey.gpkg triangles.gpkg
       a polygon with heights for each triangle, for QGIS
+  cadt tin scan.laz terrain.ply --class 2,9 --breaklines lakes.gpkg
+      the points of the lines are vertices, before the others
 """,
 }
 
@@ -143,6 +147,15 @@ def _work(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-q", "--quiet", action="store_true", help="nothing on standard error but errors")
 
 
+def _breaklines(parser: argparse.ArgumentParser, limit: str = "") -> None:
+    parser.add_argument(
+        "--breaklines",
+        metavar="FILE",
+        help="lines and outlines of polygons that triangles do not cross (.gpkg .geojson .fgb .shp): banks, ridges, lakes; "
+        f"heights are the file's, or where it has none those between the points{limit}",
+    )
+
+
 def _raster(parser: argparse.ArgumentParser) -> None:
     _input(parser, "a GeoTIFF, .tif")
     parser.add_argument("--res", type=float, metavar="R", help="width and height of a cell, in the units of the points")
@@ -163,12 +176,7 @@ def _raster(parser: argparse.ArgumentParser) -> None:
         default="linear",
         help="between the points: linear (in the triangle; default), nearest (the nearest point's) or natural (natural neighbours: smooth)",
     )
-    parser.add_argument(
-        "--breaklines",
-        metavar="FILE",
-        help="lines and outlines of polygons that triangles do not cross (.gpkg .geojson .fgb .shp): banks, ridges, lakes; "
-        "heights are the file's, or where it has none those between the points; --method linear alone",
-    )
+    _breaklines(parser, "; --method linear alone")
     parser.add_argument(
         "--fill",
         choices=("none", "nearest"),
@@ -206,11 +214,13 @@ def _contour(parser: argparse.ArgumentParser) -> None:
     _input(parser, ".gpkg .fgb .geojson")
     parser.add_argument("--interval", type=float, required=True, metavar="D", help="height between two lines")
     parser.add_argument("--base", type=float, default=0.0, metavar="H", help="height of one of the lines (default: 0)")
+    _breaklines(parser)
     _work(parser)
 
 
 def _tin(parser: argparse.ArgumentParser) -> None:
     _input(parser, ".ply .glb .gpkg .fgb")
+    _breaklines(parser)
     _work(parser)
 
 

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 import cadt
 
+from ._breaklines import check_file, inputs_of, terrain_of
 from ._features import lines_wkb
 from ._files import check_output
-from ._mesh import check_max_edge, kept_triangles, read, triangulate
+from ._mesh import check_max_edge, kept_triangles, read
 from ._progress import ProgressLine
 from ._vector import check_features, write_features
 from .cloud import require_crs
@@ -32,7 +33,8 @@ Lines = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
 
 
 def contour_lines(
-    mesh: cadt.Delaunay, z: NDArray[np.float64], interval: float, base: float = 0.0, max_edge: float | None = None
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay,
+    z: NDArray[np.float64], interval: float, base: float = 0.0, max_edge: float | None = None
 ) -> Lines:
     """Contour lines at base + k interval.
 
@@ -172,17 +174,19 @@ def contour_command(options: argparse.Namespace, line: ProgressLine) -> dict[str
     if not math.isfinite(options.base):
         raise UsageError(f"--base {options.base:g}: a finite height is needed")
     check_max_edge(options.max_edge)
-    check_output(options.output, WRITE_FORMATS, options.inputs)
+    check_file(options)
+    check_output(options.output, WRITE_FORMATS, inputs_of(options))
     check_features(options.output)
     cloud = read(options, line)
     require_crs(cloud, options.crs, options.output)
     name = ", ".join(cloud.sources)
-    mesh = triangulate(cloud.xy, name, options, line)
+    terrain = terrain_of(cloud, options, line)
+    mesh, z = terrain.mesh, terrain.z
     line.step("following the lines")
-    xy, begin, level = contour_lines(mesh, cloud.z, options.interval, options.base, options.max_edge)
+    xy, begin, level = contour_lines(mesh, z, options.interval, options.base, options.max_edge)
     if len(level) == 0:
         kept_triangles(mesh, options.max_edge, name)  # says so, if there are none
-        low, high = float(cloud.z.min()), float(cloud.z.max())
+        low, high = float(z.min()), float(z.max())
         raise FileError(
             name,
             f"no line at {options.base:g} + k {options.interval:g}: the heights are {low:g} to {high:g}; take a smaller --interval",
@@ -191,6 +195,7 @@ def contour_command(options: argparse.Namespace, line: ProgressLine) -> dict[str
     write_features(options.output, lines_wkb(xy, begin), "LineString", {"elevation": level}, cloud.crs, "contour")
     return {
         "points": len(cloud),
+        **terrain.said,
         "triangles": mesh.n_triangles,
         "lines": len(level),
         "heights": f"{level[0]:g} to {level[-1]:g}",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import cadt
 
-from . import _breaklines
+from ._breaklines import check_file, inputs_of, terrain_of
 from ._buckets import Buckets, Floats
 from ._files import check_output, check_utf8
 from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
@@ -90,14 +90,17 @@ def check_options(options: argparse.Namespace) -> None:
     check_max_edge(options.max_edge)
     check_nodata(options.nodata, options.dtype)
     parse_bounds(options.bounds)
-    if options.breaklines is not None:
-        _breaklines.check_options(options)
+    if options.breaklines is not None and options.method != "linear":
+        raise UsageError(f"--breaklines: --method {options.method} takes no notice of lines; leave it out")
+    if options.breaklines is not None and options.scratch is not None:
+        raise UsageError("--breaklines: with --scratch there are none; use fewer points, or leave one of both out")
+    check_file(options)
     if options.scratch is not None:
         with_scratch().check_options(options)
     elif options.tile_points is not None:
         raise UsageError("--tile-points is for --scratch, which is missing")
-    others = [name for name in (options.align, options.breaklines) if name is not None]
-    check_output(options.output, WRITE_FORMATS, options.inputs + others)
+    aligned = [options.align] if options.align is not None else []
+    check_output(options.output, WRITE_FORMATS, inputs_of(options) + aligned)
     check_utf8(options.output)
 
 
@@ -144,17 +147,12 @@ class InMemory:
 
     def _rows_with_breaklines(self, cloud: Cloud, grid: Grid) -> tuple[Iterator[Floats], str]:
         options = self.options
-        lines = _breaklines.read_breaklines(options.breaklines, cloud, options.crs)
-        lines = _breaklines.leave_out_far(lines, cloud, self.line)
-        broken = _breaklines.add_breaklines(cloud, lines, options, self.line)
-        self.said["breaklines"] = f"{len(lines.offsets) - 1}, with {len(lines.xyz)} points; heights of {broken.heights}"
-        mesh = broken.mesh
-        if mesh.n_triangles == 0:
-            raise no_triangles(", ".join(cloud.sources), len(cloud))
+        terrain = terrain_of(cloud, options, self.line)
+        mesh, self.said = terrain.mesh, terrain.said
         nearest = None
         if options.fill == "nearest":
             nearest = triangulate(np.asarray(mesh.points), ", ".join(cloud.sources), options, self.line)
-        return by_whole(mesh, broken.z, grid, options, nearest), mesh.device
+        return by_whole(mesh, terrain.z, grid, options, nearest), mesh.device
 
 
 def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import struct
 import time
@@ -12,9 +13,10 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
+from ._breaklines import check_file, inputs_of, terrain_of
 from ._features import triangles_wkb
 from ._files import check_output, complete_file
-from ._mesh import check_max_edge, kept_triangles, read, triangulate
+from ._mesh import check_max_edge, kept_triangles, read
 from ._progress import ProgressLine
 from ._vector import check_features, write_features
 from .cloud import Cloud, require_crs
@@ -130,14 +132,18 @@ def write_tin(path: str, cloud: Cloud, corners: NDArray[np.int32]) -> None:
 def tin_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
     start = time.monotonic()
     check_max_edge(options.max_edge)
-    suffix = check_output(options.output, WRITE_FORMATS, options.inputs)
+    check_file(options)
+    suffix = check_output(options.output, WRITE_FORMATS, inputs_of(options))
     if suffix in FEATURES:
         check_features(options.output)
     cloud = read(options, line)
     if suffix in FEATURES:
         require_crs(cloud, options.crs, options.output)
     name = ", ".join(cloud.sources)
-    mesh = triangulate(cloud.xy, name, options, line)
+    terrain = terrain_of(cloud, options, line)
+    mesh, given = terrain.mesh, len(cloud)
+    if options.breaklines is not None:
+        cloud = dataclasses.replace(cloud, xy=np.asarray(mesh.points), z=terrain.z)
     corners = np.asarray(mesh.simplices)
     kept = kept_triangles(mesh, options.max_edge, name)
     if kept is not None:
@@ -145,7 +151,8 @@ def tin_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, ob
     line.step(f"writing {options.output}")
     write_tin(options.output, cloud, corners)
     return {
-        "points": len(cloud),
+        "points": given,
+        **terrain.said,
         "triangles": len(corners),
         "time": f"{time.monotonic() - start:.3f} s",
         "back end": mesh.device,

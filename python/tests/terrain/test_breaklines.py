@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cadt raster --breaklines: lines with and without heights, what is refused, and a lake of a LiDAR scan."""
+"""--breaklines: lines with and without heights, what is refused, and a lake of a LiDAR scan."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import pytest
 import rasterio
 import shapely
 from cadt.terrain import read_cloud
+from test_tin import read_ply
 
 AT = np.array([500_000.0, 5_400_000.0])
 BOUNDS = "500000,5400000,500160,5400100"
@@ -169,6 +170,53 @@ def test_lines_outside_of_the_points(las, tmp_path, cadt_terrain):
     assert "breaklines  0, with 0 points" in err
     err, cells = run(shapely.LineString(AT + [[50, 50], [150, 50]]))
     assert "warning" not in err and (cells != -9999).sum() > (alone != -9999).sum()
+
+
+def test_contour_lines_follow_them(las, tmp_path, cadt_terrain):
+    """Straight along the ditch, half way down its slopes."""
+    las("scan.laz", scattered())
+    name = write(tmp_path / "banks.gpkg", [bank(40), bank(50), bank(60)])
+
+    def off(*words: str) -> float:
+        err = cadt_terrain("contour", "scan.laz", "lines.gpkg", "--interval", "10", "--base", "295", *words).err
+        assert ("breaklines  3, with 9 points; heights of the file" in err) == bool(words)
+        x, y = (shapely.get_coordinates(geopandas.read_file(tmp_path / "lines.gpkg").geometry) - AT).T
+        inner = (x > 10) & (x < 90)
+        assert not words or set(np.round(y[inner])) == {45, 55}
+        return float(np.abs(np.abs(y[inner] - 50) - 5).max())
+
+    assert off() > 2
+    assert off("--breaklines", name) < 0.01  # heights of the scan are whole millimetres
+    cadt_terrain("contour", "scan.laz", "banks.gpkg", "--interval", "1", "--breaklines", name, code=2, says="this is an input")
+    cadt_terrain("contour", "scan.laz", "l.gpkg", "--interval", "1", "--breaklines", "a.dxf", code=2, says="gpkg")
+
+
+def test_tin_has_them_as_edges(las, tmp_path, cadt_terrain):
+    points = scattered()
+    las("scan.laz", points)
+    flat = shapely.LineString(AT + [[5, 5], [95, 12]])  # without heights
+    name = write(tmp_path / "banks.gpkg", [bank(40), bank(50), bank(60), flat])
+    err = cadt_terrain("tin", "scan.laz", "o.ply", "--breaklines", name).err
+    assert f"points      {len(points)}\nbreaklines  4, with 11 points; heights of the file, but 2 from the points" in err
+    vertices, corners = read_ply((tmp_path / "o.ply").read_bytes())
+    assert len(vertices) == 11 + len(points)
+    assert np.array_equal(vertices[:9], [xyz for y in (40, 50, 60) for xyz in bank(y).coords])
+    assert np.abs(vertices[11:] - points).max() < 1e-3
+    mesh = cadt.ConstrainedDelaunay(vertices[:, :2], polylines=[0, 3, 6, 9, 11])
+    assert np.array_equal(corners, mesh.simplices)
+    edges = {frozenset(pair) for k in range(3) for pair in np.roll(corners, k, axis=1)[:, :2].tolist()}
+    assert {frozenset((i, i + 1)) for i in (0, 1, 3, 4, 6, 7)} <= edges
+    cadt_terrain("tin", "scan.laz", "short.ply", "--breaklines", name, "--max-edge", "20")
+    assert 0 < len(read_ply((tmp_path / "short.ply").read_bytes())[1]) < len(corners)
+    cadt_terrain("tin", "scan.laz", "o.gpkg", "--breaklines", name)
+    polygons = geopandas.read_file(tmp_path / "o.gpkg").geometry
+    assert len(polygons) == len(corners) and polygons.area.sum() == pytest.approx(10_000)
+    cadt_terrain("tin", "scan.laz", "banks.gpkg", "--breaklines", name, code=2, says="this is an input")
+    cadt_terrain("tin", "scan.laz", "o.ply", "--breaklines", "missing.shp", code=3, says="cannot be opened")
+    np.savetxt(tmp_path / "row.xyz", np.column_stack([np.arange(4), np.zeros((4, 2))]) + [*AT, 0])
+    row = write(tmp_path / "row.gpkg", [shapely.LineString([(*AT, 0), (*(AT + [3, 0]), 1)])])
+    words = ("--crs", "EPSG:25832", "--breaklines", row)
+    cadt_terrain("tin", "row.xyz", "o.ply", *words, code=3, says="no triangles: the 4 points are fewer than three")
 
 
 def test_what_is_refused(las, tmp_path, cadt_terrain):

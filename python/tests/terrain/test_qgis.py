@@ -10,7 +10,9 @@ import subprocess
 import sys
 import types
 
+import geopandas
 import pytest
+import shapely
 from clouds import PACKAGES, ROOT, hills
 
 
@@ -34,18 +36,19 @@ def provider(monkeypatch):
     return module
 
 
-def run_algorithm(provider, monkeypatch, tmp_path, text, canceled=lambda: False):
-    """An algorithm that runs a program of Python's; what QGIS is told."""
+def run_algorithm(provider, monkeypatch, tmp_path, text, canceled=lambda: False, **files):
+    """An algorithm that runs a program of Python's; what QGIS is told. `files`: parameters that are."""
     script = tmp_path / "program"
     script.write_text(f"#!{sys.executable}\n{text}")
     script.chmod(0o755)
     monkeypatch.setattr(provider, "program", lambda: str(script))
     told = []
     algorithm = provider.Tin()
-    algorithm.parameterAsFile = algorithm.parameterAsFileOutput = lambda *_: "a"
+    algorithm.parameterAsFile = lambda parameters, name, context: parameters.get(name, "")
+    algorithm.parameterAsFileOutput = lambda *_: "out.ply"
     algorithm.parameterAsString = lambda *_: ""
     feedback = types.SimpleNamespace(isCanceled=canceled, pushCommandInfo=lambda _: None, pushConsoleInfo=told.append)
-    algorithm.processAlgorithm({}, None, feedback)
+    algorithm.processAlgorithm(files, None, feedback)
     return "".join(told)
 
 
@@ -64,6 +67,14 @@ sys.exit(130)
 """
     said = run_algorithm(provider, monkeypatch, tmp_path, text, canceled=(tmp_path / "ready").exists)
     assert said == "1\n"
+
+
+def test_qgis_passes_files(provider, monkeypatch, tmp_path):
+    text = "import sys\nprint(*sys.argv[1:], file=sys.stderr)\n"
+    said = run_algorithm(provider, monkeypatch, tmp_path, text, INPUT="a.laz")
+    assert said == "tin a.laz -o out.ply\n"
+    said = run_algorithm(provider, monkeypatch, tmp_path, text, INPUT="a.laz", BREAKLINES="banks.gpkg")
+    assert said == "tin a.laz -o out.ply --breaklines banks.gpkg\n"
 
 
 def test_qgis_reads_what_is_no_text_of_the_locale(provider, monkeypatch, tmp_path):
@@ -99,7 +110,10 @@ def test_qgis(las, tmp_path, installed, monkeypatch):
     assert all(f"cadt:{name}" in run("list") for name in ("raster", "contour", "tin"))
     run("run", "cadt:raster", "--", "INPUT=a.laz", "RES=2", "MAX_EDGE=30", "CLASS=2", f"OUTPUT={tmp_path}/o.tif")
     run("run", "cadt:contour", "--", "INPUT=a.laz", "INTERVAL=5", f"OUTPUT={tmp_path}/o.gpkg")
-    run("run", "cadt:tin", "--", "INPUT=a.laz", f"OUTPUT={tmp_path}/o.ply")
+    bank = geopandas.GeoSeries([shapely.LineString(hills(2000)[:2, :2])], crs="EPSG:25832")
+    bank.to_file(tmp_path / "banks.gpkg")
+    lines = f"BREAKLINES={tmp_path}/banks.gpkg"
+    assert "breaklines  1" in run("run", "cadt:tin", "--", "INPUT=a.laz", lines, f"OUTPUT={tmp_path}/o.ply")
     for name in ("o.tif", "o.gpkg", "o.ply"):
         assert (tmp_path / name).stat().st_size > 1000
     said = run("run", "cadt:raster", "--", "INPUT=a.laz", "RES=2", "CLASS=9", f"OUTPUT={tmp_path}/no.tif", code=1)

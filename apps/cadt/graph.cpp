@@ -95,12 +95,16 @@ void add_crossing_option(CLI::App& command, SegmentOptions& o) {
       ->type_name("RULE");
 }
 
-void add_segment_options(CLI::App& command, SegmentOptions& o) {
+void add_segments_option(CLI::App& command, SegmentOptions& o) {
   command
       .add_option("--segments", o.file,
                   "segments that have to be edges, such as breaklines, with their points: " +
                       join(io::segment_read_formats(), " "))
       ->type_name("FILE");
+}
+
+void add_segment_options(CLI::App& command, SegmentOptions& o) {
+  add_segments_option(command, o);
   std::vector<std::string> names;
   for (const auto& [name, domain] : domains) names.emplace_back(name);
   command
@@ -161,6 +165,11 @@ void note_no_heights(const std::string& name, bool some) {
   say(fmt::format("cadt: heights are left out: {} has none{}\n", name, some ? " at some points" : ""));
 }
 
+void note_holes(const Graph& graph, const SegmentOptions& options) {
+  if (graph.holes.empty() || options.domain == "seeds") return;
+  say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
+}
+
 Graph graph_of(io::SegmentsFile file) {
   Graph graph;
   graph.some_heights = file.some_heights;
@@ -189,9 +198,6 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
                                             display_name(input.path, true)));
     if (!same_file) graph.points = read_input(input);
     append(graph, graph_of(io::read_segments(options.file)), same_file, options.file, quiet);
-  }
-  if (!graph.holes.empty() && options.domain != "seeds" && !quiet) {
-    say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
   }
   return graph;
 }

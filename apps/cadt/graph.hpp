@@ -22,6 +22,8 @@ struct SegmentOptions {
 
 /// Adds --crossing.
 void add_crossing_option(CLI::App& command, SegmentOptions& options);
+/// Adds --segments.
+void add_segments_option(CLI::App& command, SegmentOptions& options);
 /// Adds --segments, --domain and --crossing.
 void add_segment_options(CLI::App& command, SegmentOptions& options);
 
@@ -42,6 +44,9 @@ struct Graph {
 [[nodiscard]] std::string name_of(const InputOptions& input, const SegmentOptions& options);
 /// A note that heights are left out, since the file has none, or has none at some points.
 void note_no_heights(const std::string& name, bool some);
+
+/// A note if the file has holes that --domain leaves out of account.
+void note_holes(const Graph& graph, const SegmentOptions& options);
 
 /// What the library is told, with what the file says of seeds. Throws Failure (usage).
 [[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph = {});

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cadt::cli {
@@ -23,7 +24,7 @@ std::vector<std::string> interpolate_formats() {
 int run(const QueryOptions& options) {
   const Output output = plan_query_output(options, interpolate_formats(), "txt");
   QueryRun run(options);
-  const io::Values values = run.read_values();
+  io::Values values = run.read_values();
   if (output.format == "xyz" && values.per_row != 1) {
     throw Failure(exit_usage, fmt::format("{}: {} values a point, and .xyz has room for one: write a .csv, .txt, .npy "
                                           "or .npz",
@@ -31,15 +32,16 @@ int run(const QueryOptions& options) {
   }
   io::PointSet queries = run.read_queries();
   run.make_mesh();
+  const std::size_t per_row = values.per_row;
+  const std::vector<double> at_vertices = run.values_of_vertices(std::move(values));
   const Outside outside = options.outside == "nearest" ? Outside::nearest : Outside::nan;
   const std::vector<double> found = run.ask("interpolating", [&](MeshQueries& mesh) {
-    return mesh.interpolate(values.values, queries.view(), method_of(options), outside);
+    return mesh.interpolate(at_vertices, queries.view(), method_of(options), outside);
   });
   std::size_t without = 0;
-  for (std::size_t i = 0; i < found.size(); i += values.per_row) without += std::isnan(found[i]) ? 1 : 0;
+  for (std::size_t i = 0; i < found.size(); i += per_row) without += std::isnan(found[i]) ? 1 : 0;
 
-  const io::NamedArray columns[] = {
-      {"value", std::span<const double>(found), values.per_row == 1 ? std::size_t{0} : values.per_row}};
+  const io::NamedArray columns[] = {{"value", std::span<const double>(found), per_row == 1 ? std::size_t{0} : per_row}};
   const auto write = [&] {
     if (output.format == "xyz") {
       queries.height = found;
@@ -60,6 +62,7 @@ void add_interpolate(CLI::App& app, Action& chosen) {
       app.add_subcommand("interpolate", "values between the points: linear, nearest, natural neighbours");
   const auto options = std::make_shared<QueryOptions>();
   add_input_options(*command, options->input, "POINTS", "file with the points of the mesh");
+  add_query_segments(*command, *options);
   add_query_points(*command, *options);
   add_value_options(*command, *options);
   command
@@ -77,6 +80,8 @@ void add_interpolate(CLI::App& app, Action& chosen) {
       "Examples:\n"
       "  cadt interpolate terrain.xyz path.xy --method natural -o path.xyz\n"
       "      the heights along a path\n"
+      "  cadt interpolate terrain.xyz path.xy --segments banks.obj -o path.xyz\n"
+      "      the same with breaklines, whose points have heights as well\n"
       "  cadt interpolate stations.csv grid.npy --columns lon,lat --values temperature.txt -o field.npy\n"
       "      values from a file of their own\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

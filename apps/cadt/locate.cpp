@@ -77,6 +77,7 @@ void add_locate(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("locate", "find the triangle or the nearest points of each query");
   const auto options = std::make_shared<LocateCommand>();
   add_input_options(*command, options->query.input, "POINTS", "file with the points of the mesh");
+  add_query_segments(*command, options->query);
   add_query_points(*command, options->query);
   command->add_flag("--barycentric", options->barycentric,
                     "also the barycentric coordinates, in the order of the triangle's corners; nan outside");

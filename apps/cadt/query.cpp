@@ -9,6 +9,12 @@
 
 namespace cadt::cli {
 
+void add_query_segments(CLI::App& command, QueryOptions& o) {
+  o.takes_segments = true;
+  add_segments_option(command, o.segments);
+  add_crossing_option(command, o.segments);
+}
+
 void add_query_points(CLI::App& command, QueryOptions& o) {
   command
       .add_option("QUERIES", o.queries,
@@ -63,7 +69,7 @@ Output plan_query_output(const QueryOptions& o, const std::vector<std::string>& 
   if (o.values == "-") throw Failure(exit_usage, "--values takes z or a file, not standard input");
   require_columns(o.query_columns, "--query-columns");
   const std::string values = o.values == "z" ? std::string() : o.values;
-  return plan_outputs({o.output}, format, formats, {o.input.path, o.queries, values}).front();
+  return plan_outputs({o.output}, format, formats, {o.input.path, o.queries, values, o.segments.file}).front();
 }
 
 Interpolation method_of(const QueryOptions& o) {
@@ -73,36 +79,58 @@ Interpolation method_of(const QueryOptions& o) {
 }
 
 QueryRun::QueryRun(const QueryOptions& options)
-    : line(options.quiet), options_(options), library_(library_options(options.device)) {
+    : line(options.quiet),
+      options_(options),
+      name_(name_of(options.input, options.segments)),
+      library_(library_options(options.device)) {
+  const bool segments = options.takes_segments && has_segments(options.input, options.segments);
   library_.statistics = StatisticsDetail::none;
   library_.stop = interrupt_token();
   library_.progress = [this](const Progress& progress) { line.update(progress); };
-  line.step(fmt::format("reading {}", display_name(options.input.path, true)));
-  points = read_input(options.input);
+  line.step(fmt::format("reading {}", name_));
+  if (segments) {
+    graph_ = read_graph(options.input, options.segments, options.quiet);
+    points = std::move(graph_->points);
+  } else {
+    points = read_input(options.input);
+  }
 }
 
 void QueryRun::make_mesh() {
   line.start(points.size());
-  mesh = guarded("triangulating", {}, [&] { return triangulate(points.view(), library_); });
+  if (graph_) {
+    constrained_ =
+        triangulate_graph(points.view(), graph_->segments, name_, constraint_options(options_.segments), library_);
+    check_interrupt();
+    if (!constrained_->rounded_valid())
+      throw Failure(exit_file,
+                    name_ +
+                        ": crossings are too close to others for rounded coordinates, so that some triangles "
+                        "are turned over or flat; --crossing grid=G keeps them apart");
+  } else {
+    mesh_ = guarded("triangulating", {}, [&] { return triangulate(points.view(), library_); });
+  }
   library_.progress = nullptr;
-  queries_.emplace(guarded("preparing", {}, [&] { return MeshQueries(points.view(), mesh, library_); }));
+  queries_.emplace(guarded("preparing", {}, [&] {
+    return constrained_ ? MeshQueries(points.view(), *constrained_, library_)
+                        : MeshQueries(points.view(), mesh_, library_);
+  }));
   line.clear();
-  if (mesh.dimension() < 2 && !options_.quiet) {
+  if (mesh().dimension() < 2 && !options_.quiet) {
     say(
         fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line; check "
                     "--columns and --project if you expected some\n",
-                    display_name(options_.input.path, true)));
+                    name_));
   }
 }
 
 io::Values QueryRun::read_values() const {
-  const std::string name = display_name(options_.input.path, true);
   if (options_.values == "z") {
     if (points.height.empty()) {
       throw Failure(exit_file,
                     fmt::format("{}: no values: the points have no third coordinate; name three columns with "
                                 "--columns x,y,depth, or a file with a row for each point with --values FILE",
-                                name));
+                                name_));
     }
     return {points.height, 1};
   }
@@ -110,9 +138,14 @@ io::Values QueryRun::read_values() const {
   if (values.rows() != points.size()) {
     throw Failure(exit_file, fmt::format("{}: {} rows of values for the {} points of {}; there must be a row for each "
                                          "point, in the same order",
-                                         options_.values, values.rows(), points.size(), name));
+                                         options_.values, values.rows(), points.size(), name_));
   }
   return values;
+}
+
+std::vector<double> QueryRun::values_of_vertices(io::Values values) const {
+  if (!constrained_) return std::move(values.values);
+  return values_at_crossings(points.view(), values.values, values.per_row, *constrained_);
 }
 
 io::PointSet QueryRun::read_queries() {
@@ -127,7 +160,7 @@ io::PointSet QueryRun::read_queries() {
 // The readers let finite coordinates through only, so this is about all of them, or about what an option says.
 void QueryRun::refuse(const InputError& error, const std::string& about) const {
   if (!about.empty()) throw Failure(exit_usage, fmt::format("{}: {}", about, error.what()));
-  throw Failure(exit_file, fmt::format("{}: {}", display_name(options_.input.path, true), error.what()));
+  throw Failure(exit_file, fmt::format("{}: {}", name_, error.what()));
 }
 
 void QueryRun::write(const Output& output, const std::function<void()>& writer,
@@ -145,7 +178,7 @@ void QueryRun::write(const Output& output, const std::function<void()>& writer,
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const DeviceInfo& device = queries_->device();
   std::string text = key_line("points", std::to_string(points.size()));
-  text += key_line("triangles", std::to_string(mesh.number_of_triangles()));
+  text += key_line("triangles", std::to_string(mesh().number_of_triangles()));
   for (const auto& [key, value] : summary) text += key_line(key, value);
   text += key_line("time", fmt::format("{:.3f} s", seconds));
   text += key_line("back end", fmt::format("{}, {}", to_string(device.backend), device.name));

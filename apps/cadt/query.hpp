@@ -3,6 +3,8 @@
 #pragma once
 
 #include "device_options.hpp"
+#include "failure.hpp"
+#include "graph.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -24,6 +26,8 @@ namespace cadt::cli {
 
 struct QueryOptions {
   InputOptions input;
+  SegmentOptions segments;
+  bool takes_segments = false;  ///< set by add_query_segments
   std::string queries, query_format, query_columns;
   std::string values = "z", method = "linear", outside = "nan";
   std::string output = "-", format;
@@ -32,6 +36,7 @@ struct QueryOptions {
 };
 
 /// Each adds its options to a command.
+void add_query_segments(CLI::App& command, QueryOptions& options);
 void add_query_points(CLI::App& command, QueryOptions& options);
 void add_value_options(CLI::App& command, QueryOptions& options);
 void add_query_output(CLI::App& command, QueryOptions& options, const std::vector<std::string>& formats,
@@ -44,7 +49,7 @@ void add_query_work(CLI::App& command, QueryOptions& options);
 
 [[nodiscard]] Interpolation method_of(const QueryOptions& options);
 
-/// The mesh of a point file, ready to be asked.
+/// The mesh of a point file, with segments where they are given, ready to be asked.
 class QueryRun {
  public:
   explicit QueryRun(const QueryOptions& options);
@@ -55,6 +60,8 @@ class QueryRun {
   void make_mesh();
   /// Numbers at the points: their third coordinate or a file. Throws Failure if there are not as many as points.
   [[nodiscard]] io::Values read_values() const;
+  /// The same at all vertices, also at crossings that have become some. \pre make_mesh()
+  [[nodiscard]] std::vector<double> values_of_vertices(io::Values values) const;
   [[nodiscard]] io::PointSet read_queries();
 
   /// Asks the mesh. What it refuses is an error of the option `about`, or of the files if that is empty.
@@ -69,7 +76,6 @@ class QueryRun {
              const std::vector<std::pair<std::string, std::string>>& summary);
 
   io::PointSet points;
-  Triangulation mesh;
   ProgressLine line;
 
  private:
@@ -83,12 +89,23 @@ class QueryRun {
       return result;
     } catch (const InputError& e) {
       refuse(e, about);
+    } catch (const NotDelaunay&) {
+      throw Failure(
+          exit_usage,
+          "with segments not all triangles are Delaunay, and nearest points and natural neighbours need that: "
+          "leave the segments out, or ask for triangles and linear values");
     }
   }
   [[noreturn]] void refuse(const InputError& error, const std::string& about) const;
 
+  [[nodiscard]] const Triangulation& mesh() const { return constrained_ ? constrained_->mesh() : mesh_; }
+
   const QueryOptions& options_;
+  const std::string name_;  ///< of the files, for messages
   Options library_;
+  std::optional<Graph> graph_;  ///< without its points
+  Triangulation mesh_;
+  std::optional<ConstrainedTriangulation> constrained_;
   std::optional<MeshQueries> queries_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cadt::cli {
@@ -76,15 +77,16 @@ int run(const RasterCommand& command) {
     throw Failure(exit_usage, fmt::format("--max-edge {}: a length is needed, 0 or more", *command.max_edge));
   const std::optional<Box> bounds = parse_rectangle("--bounds", command.bounds);
   QueryRun run(options);
-  const io::Values values = run.read_values();
+  io::Values values = run.read_values();
   if (values.per_row != 1) {
     throw Failure(exit_file, fmt::format("{}: {} values a point, a raster has one a cell: leave the other columns out",
                                          options.values, values.per_row));
   }
   const Grid grid = make_grid(command, bounds ? *bounds : rectangle_around(run.points));
   run.make_mesh();
+  const std::vector<double> at_vertices = run.values_of_vertices(std::move(values));
   const std::vector<double> cells = run.ask("filling the cells", [&](MeshQueries& mesh) {
-    return mesh.rasterize(grid, values.values, method_of(options),
+    return mesh.rasterize(grid, at_vertices, method_of(options),
                           command.max_edge.value_or(std::numeric_limits<double>::infinity()));
   });
   const auto blank = std::count_if(cells.begin(), cells.end(), [](double v) { return std::isnan(v); });
@@ -99,6 +101,7 @@ void add_raster(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("raster", "a grid of values between the points, such as a terrain model");
   const auto options = std::make_shared<RasterCommand>();
   add_input_options(*command, options->query.input, "POINTS", "file with the points of the mesh");
+  add_query_segments(*command, options->query);
   add_value_options(*command, options->query);
   command->add_option("--res", options->resolution, "width and height of a cell, in the units of the points")
       ->type_name("R")
@@ -124,6 +127,7 @@ void add_raster(CLI::App& app, Action& chosen) {
       "Examples:\n"
       "  cadt raster terrain.xyz --res 1 -o dem.asc\n"
       "  cadt raster survey.csv --columns easting,northing,depth --res 0.5 --max-edge 20 --method natural -o sea.npy\n"
+      "  cadt raster terrain.xyz --segments banks.obj --res 1 -o dem.asc\n"
       "  cadt raster terrain.xyz --res 10 --bounds 500000,4100000,501000,4102000 -o tile.png\n\n"
       "LAS, LAZ, GIS files and GeoTIFF, with pip install \"cadt[terrain]\":\n"
       "  cadt raster scan.laz dem.tif --res 1 --class 2 --max-edge 50\n"

@@ -158,6 +158,7 @@ int run(const RenderCommand& command) {
     const std::string name = name_of(command.subject);
     line.step(fmt::format("reading {}", name));
     const Graph graph = read_graph(command.subject.input, command.subject.segments, command.quiet);
+    if (!command.quiet) note_holes(graph, command.subject.segments);
     still.colour = colour_of(command.style, graph.points, MeshKind::segments);
     const ConstraintOptions constraints = constraint_options(command.subject.segments, graph);
     line.start(graph.points.size());

@@ -29,6 +29,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   tiles::Stopwatch watch;
   line.step(fmt::format("reading {}", name));
   Graph graph = read_graph(options.input, options.segments, options.quiet);
+  if (!options.quiet) note_holes(graph, options.segments);
   round_to_floats(graph.points, options.input, options.quiet);
   const ConstraintOptions constraints = constraint_options(options.segments, graph);
   report.input = options.input.path;

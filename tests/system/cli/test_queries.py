@@ -164,5 +164,60 @@ class InterpolateCommand(CliTest):
         self.assertEqual(self.path("o.xyz").read_text(), "5 0.1 nan\n0 0.5 2\n")
 
 
+class SegmentsOfQueries(CliTest):
+    """A flat square with a wall between two of its points, 10 high."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("flat.xyz", "0 0 0\n10 0 0\n10 10 0\n0 10 0\n5 1 0\n5 9 0\n")
+        self.write("wall.obj", "v 1 5 10\nv 9 5 10\nl 1 2\n")
+
+    def test_values_bend_at_segments(self):
+        ask = "5 5\n5 4\n3 5\n5 1\n20 20\n"
+        self.assertEqual(self.cadt("interpolate", "flat.xyz", "-", stdin=ask).out, "0\n0\n0\n0\nnan\n")
+        result = self.cadt("interpolate", "flat.xyz", "-", "--segments", "wall.obj", stdin=ask)
+        self.assertEqual((result.out, result.err), ("10\n7.5\n10\n0\nnan\n", ""))
+        self.cadt("raster", "flat.xyz", "--segments", "wall.obj", "--res", "2", "-o", "d.npy", "-q")
+        self.assertEqual(read_npy(self.path("d.npy").read_bytes())[1][2::5], [0, 5, 10, 5, 0])  # the cells around x = 5
+        self.write("v.txt", "0 1\n" * 6 + "8 2\n" * 2)
+        words = ("interpolate", "flat.xyz", "-", "--segments", "wall.obj", "--values", "v.txt")
+        self.assertEqual(self.cadt(*words, stdin="5 4\n").out, "6 1.75\n")
+        self.write("v.txt", "0\n" * 6)
+        self.fails(3, *words, stdin="5 4\n", says="6 rows of values for the 8 points of flat.xyz with wall.obj")
+
+    def test_triangles_are_those_of_triangulate(self):
+        self.cadt("triangulate", "flat.xyz", "--segments", "wall.obj", "-o", "m.off", "-q")
+        points, triangles = read_off(self.path("m.off").read_text())
+        centres = [tuple(sum(float(points[v][k]) for v in t) / 3 for k in (0, 1)) for t in triangles]
+        out = self.cadt("locate", "flat.xyz", "-", "--segments", "wall.obj", stdin=xy_text(centres)).out
+        self.assertEqual([int(word) for word in out.split()], list(range(len(triangles))))
+        self.assertTrue(any({6, 7} <= set(t) for t in triangles))
+
+    def test_crossings_become_vertices_with_values_of_the_first_segment(self):
+        self.write("x.poly", "4 2 1 0\n1 0 0 1\n2 4 4 3\n3 0 4 5\n4 4 0 7\n2 0\n1 1 2\n2 3 4\n1\n1 1 2\n")
+        self.fails(3, "interpolate", "x.poly", "-", stdin="2 2\n", says=["1 pair of segments crosses", "--crossing exact"])
+        for rule in ("exact", "grid=1"):
+            result = self.cadt("interpolate", "x.poly", "-", "--crossing", rule, stdin="2 2\n1 2\n")
+            self.assertEqual((result.out, result.err), ("2\n2.5\n", ""))  # holes are no business of queries
+        self.cadt("raster", "x.poly", "--crossing", "exact", "--res", "4", "-o", "d.npy", "-q")
+        self.assertEqual(read_npy(self.path("d.npy").read_bytes()), ((1, 1), [2]))
+
+    def test_what_is_refused(self):
+        self.write("thin.xyz", "0 0 0\n10 0 0\n5 1 1\n5 -1 1\n")
+        self.write("long.edg", "1\n0 0 10 0\n")
+        self.write("q.xy", "5 0\n")
+        ask = ("thin.xyz", "q.xy", "--segments", "long.edg")
+        self.assertEqual(self.cadt("locate", *ask).out, "0\n")
+        for words in (("locate", *ask, "--nearest"), ("interpolate", *ask, "--values", "v.txt", "--method", "natural")):
+            self.write("v.txt", "1\n" * 6)
+            self.fails(2, *words, says="not all triangles are Delaunay")
+        self.fails(3, "interpolate", *ask, says=["heights are left out: long.edg has none", "with long.edg: no values"])
+        self.fails(2, "locate", *ask, "-o", "long.edg", "-t", "txt", says="this is the input")
+        self.fails(2, "locate", "thin.xyz", "q.xy", "--crossing", "exact", says="--crossing is about segments")
+        self.fails(2, "raster", "thin.xyz", "--segments", "-", "--res", "1", "-o", "d.npy", says="standard input is for IN")
+        self.fails(3, "locate", "thin.xyz", "q.xy", "--segments", "no.edg", says="no.edg: ")
+        self.fails(2, "voronoi", "thin.xyz", "--segments", "long.edg", "-o", "v.svg", says="no option --segments")
+
+
 if __name__ == "__main__":
     unittest.main()

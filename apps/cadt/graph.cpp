@@ -75,6 +75,7 @@ void append(Graph& graph, Graph&& more, bool same_file, const std::string& name,
   for (Segment& segment : graph.segments) {
     for (std::int32_t& v : segment) v += static_cast<std::int32_t>(before);
   }
+  graph.own_points = before;
   auto& height = graph.points.height;
   if (height.empty() != more.points.height.empty()) {
     if (!quiet) note_no_heights(height.empty() ? "the input" : name, !height.empty() && more.some_heights);
@@ -168,6 +169,21 @@ void note_no_heights(const std::string& name, bool some) {
 void note_holes(const Graph& graph, const SegmentOptions& options) {
   if (graph.holes.empty() || options.domain == "seeds") return;
   say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
+}
+
+void note_other_heights(const Graph& graph, PointsView points, std::span<const double> height,
+                        const Triangulation& mesh, const std::string& name) {
+  std::size_t others = 0, first = 0;
+  for (const auto& [point, representative] : mesh.duplicates()) {
+    const auto i = static_cast<std::size_t>(point), of = static_cast<std::size_t>(representative);
+    if (height.empty() || of >= graph.own_points || i < graph.own_points || height[i] == height[of]) continue;
+    if (others++ == 0) first = i;
+  }
+  if (others == 0) return;
+  say(fmt::format(
+      "cadt: warning: {}: {} of its points have other heights than those of the input at the same places, the "
+      "first at {} {}: those of the input are taken\n",
+      name, others, points.x(first), points.y(first)));
 }
 
 Graph graph_of(io::SegmentsFile file) {

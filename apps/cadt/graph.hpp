@@ -36,8 +36,9 @@ struct Graph {
   std::vector<Segment> segments;
   std::vector<std::array<double, 2>> holes;
   std::vector<Region> regions;
-  std::string crs = {};       ///< reference system of a GeoJSON file
-  bool some_heights = false;  ///< as in io::SegmentsFile
+  std::string crs = {};        ///< reference system of a GeoJSON file
+  bool some_heights = false;   ///< as in io::SegmentsFile
+  std::size_t own_points = 0;  ///< of the input; those of --segments follow
 };
 
 /// The files that points and segments are read from, for messages.
@@ -47,6 +48,10 @@ void note_no_heights(const std::string& name, bool some);
 
 /// A note if the file has holes that --domain leaves out of account.
 void note_holes(const Graph& graph, const SegmentOptions& options);
+
+/// A note if points of --segments have other heights than those of the input at the same places, which count.
+void note_other_heights(const Graph& graph, PointsView points, std::span<const double> height,
+                        const Triangulation& mesh, const std::string& name);
 
 /// What the library is told, with what the file says of seeds. Throws Failure (usage).
 [[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph = {});

@@ -102,6 +102,8 @@ void QueryRun::make_mesh() {
     constrained_ =
         triangulate_graph(points.view(), graph_->segments, name_, constraint_options(options_.segments), library_);
     check_interrupt();
+    if (options_.values == "z" && !options_.quiet)
+      note_other_heights(*graph_, points.view(), points.height, constrained_->mesh(), options_.segments.file);
     if (!constrained_->rounded_valid())
       throw Failure(exit_file,
                     name_ +
@@ -126,6 +128,13 @@ void QueryRun::make_mesh() {
 
 io::Values QueryRun::read_values() const {
   if (options_.values == "z") {
+    if (points.height.empty() && graph_) {
+      throw Failure(
+          exit_file,
+          fmt::format("{}: no values: the points and those of the segments need a third coordinate each; or name a "
+                      "file with a row for each point with --values FILE",
+                      name_));
+    }
     if (points.height.empty()) {
       throw Failure(exit_file,
                     fmt::format("{}: no values: the points have no third coordinate; name three columns with "

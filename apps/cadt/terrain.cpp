@@ -71,8 +71,16 @@ void add_terrain_commands(CLI::App& app) {
 bool is_for_terrain(int count, char** words) {
   if (count < 2) return false;
   if (contains(terrain_commands, words[1])) return true;
-  return std::string_view(words[1]) == "raster" &&
-         std::any_of(words + 2, words + count, [](std::string_view word) { return is_for_terrain(word); });
+  if (std::string_view(words[1]) != "raster") return false;
+  for (int i = 2; i < count; ++i) {
+    const std::string_view word = words[i];
+    if (word == "--segments") {
+      ++i;  // its file is read here, also a .geojson
+    } else if (!word.starts_with("--segments=") && is_for_terrain(word)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void become_terrain(int count, char** words) {

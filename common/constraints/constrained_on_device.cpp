@@ -92,6 +92,7 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
                                                           const ConstraintOptions& constraints) {
   require_segments(segments.size / 2);
   require_constants(constraints);
+  require_legal_edges(state_->options);
   if (segments.size % 2 != 0)
     throw InputError("an array of segments has two words each, this one has " + std::to_string(segments.size),
                      segments.size / 2);

@@ -60,6 +60,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
   require_size(points.size());
   require_segments(segments.size());
   require_constants(constraints);
+  require_legal_edges(state->options);
   auto data = std::make_shared<Data>();
   SegmentJob job;
   job.wants_crossings = constraints.crossing == Crossing::exact ? FindCrossings::places : FindCrossings::pairs;
@@ -132,6 +133,12 @@ void require_constants(const ConstraintOptions& options) {
   };
   require("crossing", static_cast<int>(options.crossing), static_cast<int>(Crossing::grid));
   require("domain", static_cast<int>(options.domain), static_cast<int>(Domain::seeds));
+}
+
+void require_legal_edges(const Options& options) {
+  if (options.tuning.stabilize == Stabilize::paper)
+    throw OptionError("tuning.stabilize",
+                      "paper leaves edges that are not legal, and meshes with segments have none: take off or defer");
 }
 
 ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,

@@ -58,6 +58,8 @@ struct SegmentResults {
 void require_segments(std::size_t count);
 /// \throws OptionError for a number that is no constant
 void require_constants(const ConstraintOptions& options);
+/// \throws OptionError with Stabilize::paper, which leaves edges that are not legal
+void require_legal_edges(const Options& options);
 
 /// Duplicates of input points and what they equal; null if there are none.
 struct DuplicateLists {

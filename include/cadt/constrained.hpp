@@ -61,7 +61,9 @@ struct Region {
 
 struct ConstraintOptions {
   Crossing crossing = Crossing::error;
-  double grid = 0;  ///< with Crossing::grid: the width of its cells, above 0
+  /// With Crossing::grid: the width of its cells, above 0; a power of two where coordinates are 2^25 times as large or
+  /// more, so that its multiples are doubles. Else OptionError.
+  double grid = 0;
   Domain domain = Domain::hull;
   std::vector<std::array<double, 2>> holes = {};  ///< with Domain::seeds
   std::vector<Region> regions = {};               ///< with Domain::seeds: their attributes go to region_attribute()
@@ -202,8 +204,8 @@ class CADT_API ConstrainedTriangulation {
 /// fits the rule of `constraints`. Points made for crossings are where they were rounded to: triangles are examined
 /// there (rounded_valid), but no circles that they take part in; that each is the crossing of its added_parents(),
 /// rounded to nearest, and on the chains of both, belongs to "constraints". With Crossing::grid "constraints" asks
-/// where points have moved, to the centres of their cells, and that each segment meets the cells of its chain; with
-/// another rule or width in `constraints` such a mesh fails. \throws as `verify`, InputError
+/// where points have moved, to the centres of their cells, and that each segment meets the cells of its chain; it must
+/// be given with its rule and width. \throws as `verify`, InputError
 [[nodiscard]] CADT_API VerifyReport verify(PointsView points, std::span<const Segment> segments,
                                            const ConstrainedTriangulation& mesh,
                                            const ConstraintOptions& constraints = {},

@@ -59,7 +59,8 @@ enum class Stabilize {
   off,    ///< nothing: with exact predicates flips terminate
   defer,  ///< after more than `Tuning::flip_threshold` flips it is left to the legality sweep. The same mesh
   paper   ///< after that it is flipped only if that improves quality enough: the mesh may keep illegal edges
-          ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified
+          ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified. OptionError with segments
+          ///< and polygons
 };
 /// "off", "defer", "paper".
 [[nodiscard]] CADT_API std::string_view to_string(Strategy strategy) noexcept;
@@ -79,7 +80,8 @@ struct Snapshot {
   /// Of insertion, from 1 on: each level has as many points as all before it together, except the first and the last.
   /// A large one takes several launches.
   unsigned level = 0;
-  /// The last snapshot: the legality sweep is over, and these are the triangles of the result.
+  /// The last snapshot of a Delaunay triangulation: the legality sweep is over, and these are the triangles of the
+  /// result; of a call with segments it is that before they are inserted.
   bool complete = false;
   /// Points and edges that got no locks, or had no place in a worklist, and wait for the next launch.
   std::uint64_t waiting_points = 0, waiting_edges = 0;
@@ -117,8 +119,8 @@ struct Tuning {
   /// triangles by at most this many degrees. Not negative, not NaN.
   double quality_epsilon = 1e-4;
   /// Called on the calling thread with a copy of the mesh, for pictures: after each launch of a level of points, and
-  /// once more when the mesh is complete. Never for points without triangles. Costs a copy of the whole mesh each time.
-  /// Must not throw.
+  /// once more when the mesh is complete; segments are not shown. Never for points without triangles. Costs a copy of
+  /// the whole mesh each time. Must not throw.
   std::function<void(const Snapshot&)> watch;
   /// With `watch`: a launch inserts at most this many points, so a level is seen in several steps, along the curve.
   /// 0: the library chooses.

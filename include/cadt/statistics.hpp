@@ -37,9 +37,9 @@ struct Statistics {
   unsigned threads = 0;  ///< of the host as it was opened, by triangulate() with 1 for small sets; or compute units of
                          ///< the device
 
-  std::uint64_t points = 0;         ///< input points
-  std::uint64_t distinct = 0;       ///< distinct points, all of them vertices unless dimension < 2
-  std::uint64_t launches = 0;       ///< kernel launches, without those inside the device's own sort and scan
+  std::uint64_t points = 0;    ///< input points; with Crossing::exact the crossings, which have become points, as well
+  std::uint64_t distinct = 0;  ///< distinct points, all of them vertices unless dimension < 2
+  std::uint64_t launches = 0;  ///< kernel launches, without those inside the device's own sort and scan
   std::uint64_t walk_steps = 0;     ///< triangles visited by point location
   std::uint64_t lock_attempts = 0;  ///< attempts to lock all triangles of a split or flip; one for each split or flip
                                     ///< where a thread owns its triangles without locks (CPUs)

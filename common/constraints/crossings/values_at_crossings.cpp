@@ -38,7 +38,7 @@ std::vector<double> values_at_crossings(PointsView points, std::span<const doubl
     throw InputError("the mesh has " + std::to_string(mesh.mesh().number_of_points() - count) +
                          " input points, and there are " + std::to_string(n),
                      n);
-  if (values.size() != n * columns)
+  if (n == 0 ? !values.empty() : values.size() % n != 0 || values.size() / n != columns)
     throw InputError("there are " + std::to_string(values.size()) + " values, and not " + std::to_string(columns) +
                          " for each of " + std::to_string(n) + " points",
                      n);

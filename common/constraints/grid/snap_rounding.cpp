@@ -57,8 +57,11 @@ void check_grid(PointsView points, double grid) {
   if (!std::isfinite(multiples * grid))
     refuse("the grid point next to the largest coordinate is no finite number; take a smaller width");
   if (multiples >= 0x1p25 && multiples * static_cast<double>(odd_part(grid)) > 0x1p53)
-    refuse("multiples of the width up to the largest coordinate are no doubles; take a power of two, such as " +
-           text(std::exp2(std::ceil(std::log2(grid)))) + ", or a width above " + text(most * 0x1p-24));
+    refuse(
+        "coordinates are 2^25 times the width or more, where multiples of a width that is no power of two are no "
+        "doubles; "
+        "take a power of two, such as " +
+        text(std::exp2(std::ceil(std::log2(grid)))) + ", or a width above " + text(most / (0x1p25 - 2)));
 }
 
 /// A hot pixel and what makes it hot: an input point, or the pair of a crossing.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/constraints/constraints.hpp"
 #include "common/constraints/polygons/first_edges.hpp"
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
@@ -358,6 +359,7 @@ PolygonsResult triangulate_polygons(PointsView ring_points, std::span<const std:
   require_offsets(ring_offsets, ring_points.size(), "rings", "points");
   require_offsets(polygon_offsets, ring_offsets.size() - 1, "polygons", "rings");
   if (options.tuning.watch) throw OptionError("tuning.watch", "shows one mesh; there is none in a call with polygons");
+  require_legal_edges(options);
   auto result = std::make_unique<PolygonsResult::Data>();
   const CallState state(options, ring_points.size());
   query::require_doubles(*(**state).device);

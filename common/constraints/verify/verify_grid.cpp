@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verification of meshes on a grid: points are at the centres of their cells, and segments meet those of their chains.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -108,7 +109,36 @@ class GridCheck {
     }
   }
 
+  /// Of each added point: a pair of segments that cross and go through its cell. \pre chains are right
+  void check_parents(std::span<const Segment> segments, const ConstrainedTriangulation& mesh) {
+    const auto parents = mesh.added_parents();
+    const std::size_t given = places_.given();
+    if (parents.size() != places_.size() - given)
+      return fail(0, "there are pairs of segments for " + std::to_string(parents.size()) + " added points, not for " +
+                         std::to_string(places_.size() - given));
+    std::vector<int> chains(parents.size());  // of its two segments that have the vertex
+    const auto offsets = mesh.chain_offsets();
+    for (std::size_t s = 0; s < segments.size(); ++s)
+      for (std::int64_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+        const std::int32_t v = mesh.chain_vertices()[static_cast<std::size_t>(i)];
+        if (!places_.is_added(v)) continue;
+        const std::size_t added = static_cast<std::size_t>(v) - given;
+        chains[added] += static_cast<int>(std::ranges::count(parents[added], static_cast<std::int32_t>(s)));
+      }
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      const auto [s, t] = parents[i];
+      if (s >= t || chains[i] != 2 || (i != 0 && parents[i - 1] >= parents[i]) ||
+          !cross(segments[static_cast<std::size_t>(s)], segments[static_cast<std::size_t>(t)]))
+        return fail(given + i, "point " + std::to_string(given + i) + " is no crossing of its two segments");
+    }
+  }
+
  private:
+  [[nodiscard]] bool cross(const Segment& s, const Segment& t) const {
+    const Place a = given(s[0]), b = given(s[1]), c = given(t[0]), d = given(t[1]);
+    return exact_orientation(a, b, c) * exact_orientation(a, b, d) < 0 &&
+           exact_orientation(c, d, a) * exact_orientation(c, d, b) < 0;
+  }
   void fail(std::size_t first, const std::string& what) { add_failure(check_, static_cast<std::int64_t>(first), what); }
   [[nodiscard]] Place given(std::int32_t i) const {
     return {points_.x(static_cast<std::size_t>(i)), points_.y(static_cast<std::size_t>(i))};
@@ -156,6 +186,7 @@ void check_grid(PointsView points, const MeshPlaces& places, std::span<const Seg
     grid.check_chain(s, segments[s],
                      mesh.chain_vertices().subspan(static_cast<std::size_t>(offsets[s]),
                                                    static_cast<std::size_t>(offsets[s + 1] - offsets[s])));
+  if (check.failures == 0) grid.check_parents(segments, mesh);
 }
 
 }  // namespace cadt

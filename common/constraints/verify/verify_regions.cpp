@@ -31,7 +31,7 @@ class RegionCheck {
       fail(-1, "there are not as many attributes as regions");
     } else if (check_regions()) {
       check_values();
-      if (constraints_.domain == Domain::seeds) check_attributes();
+      check_attributes();
     }
     check_.passed = check_.failures == 0;
     return check_;
@@ -192,7 +192,8 @@ class RegionCheck {
 
   void check_attributes() {
     std::vector<MeshPlaces::Place> wanted;
-    for (const Region& region : constraints_.regions) wanted.push_back({region.x, region.y});
+    if (constraints_.domain == Domain::seeds)
+      for (const Region& region : constraints_.regions) wanted.push_back({region.x, region.y});
     const std::vector<std::int32_t> found = located_.of(wanted);
     std::vector<double> attributes(mesh_.number_of_regions());
     for (std::size_t i = found.size(); i-- > 0;)  // the first that lies in a region has the last word

@@ -2,6 +2,7 @@
 // Verification of constrained edges: each segment is a chain of edges along it, and no other edge is constrained.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ class SegmentCheck {
                    std::to_string(segments_.size()));
     } else {
       for (std::size_t s = 0; s < segments_.size(); ++s) check_chain(s);
+      check_degenerate();
+      if (check_.failures == 0 && mesh_.mesh().number_of_triangles() == 0) check_line();
       check_flags();
     }
     check_.passed = check_.failures == 0;
@@ -71,19 +74,60 @@ class SegmentCheck {
     }
   }
 
+  /// \pre chains are right
+  void check_degenerate() {
+    std::vector<std::int32_t> expected;
+    for (std::size_t s = 0; s < segments_.size(); ++s)
+      if (chain(s).empty()) expected.push_back(static_cast<std::int32_t>(s));
+    if (!std::ranges::equal(mesh_.degenerate_segments(), expected))
+      fail(-1, "the degenerate segments are not those without a chain");
+  }
+
+  /// Of points that all lie on one line: each chain has all of its places, in order, each with its lowest point.
+  /// \pre chains lie on their segments
+  void check_line() {
+    const auto less = [&](std::int32_t i, std::int32_t j) {
+      const Place a = places_.at(i), b = places_.at(j);
+      return a < b || (a == b && i < j);
+    };
+    std::vector<std::int32_t> line(places_.size());
+    std::iota(line.begin(), line.end(), 0);
+    std::ranges::sort(line, less);
+    const auto same = [&](std::int32_t i, std::int32_t j) { return places_.at(i) == places_.at(j); };
+    line.erase(std::unique(line.begin(), line.end(), same), line.end());
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+      std::vector<std::int32_t> along(chain(s).begin(), chain(s).end());
+      if (along.empty()) continue;
+      if (less(along.back(), along.front())) std::ranges::reverse(along);
+      const auto first = std::ranges::lower_bound(line, along.front(), less);
+      if (static_cast<std::size_t>(line.end() - first) < along.size() || !std::equal(along.begin(), along.end(), first))
+        fail(static_cast<std::int64_t>(s), "the chain of segment " + std::to_string(s) +
+                                               " leaves out a vertex on it, or has " + "one that equals another");
+    }
+  }
+
   void check_flags() {
     const auto expected = mesh_.constrained_edges();
     const auto triangles = mesh_.mesh().triangles();
+    const auto neighbors = mesh_.mesh().neighbors();
     const auto flags = mesh_.edge_flags();
-    std::vector<Segment> flagged;
+    std::vector<Segment> flagged, open;  // all from both sides; those of the hull have one
     for (std::size_t t = 0; t < flags.size(); ++t) {
+      if (flags[t] > 7U)
+        fail(static_cast<std::int64_t>(t), "triangle " + std::to_string(t) + " has more than three flags");
       for (std::size_t k = 0; k < 3; ++k) {
         if ((flags[t] >> k & 1U) == 0) continue;
         const auto [low, high] = std::minmax(triangles[3 * t + (k + 1) % 3], triangles[3 * t + (k + 2) % 3]);
         flagged.push_back({low, high});
+        if (neighbors[3 * t + k] < 0) open.push_back({low, high});
       }
     }
+    flagged.insert(flagged.end(), open.begin(), open.end());
     std::ranges::sort(flagged);
+    for (std::size_t i = 0; i < flagged.size(); i += 2)
+      if (i + 1 == flagged.size() || flagged[i] != flagged[i + 1])
+        return fail(-1, "the edge from " + std::to_string(flagged[i][0]) + " to " + std::to_string(flagged[i][1]) +
+                            " is constrained on one side alone");
     flagged.erase(std::unique(flagged.begin(), flagged.end()), flagged.end());
     if (triangles.empty() || std::ranges::equal(flagged, expected)) return;
     const auto [a, b] = std::ranges::mismatch(flagged, expected);
@@ -155,6 +199,10 @@ VerifyReport verify(PointsView points, std::span<const Segment> segments, const 
   if (chains.passed) check_grid(points, places, segments, mesh, constraints, chains);
   chains.passed = chains.failures == 0;
   if (rounded && chains.passed) check_crossings(places, segments, mesh, chains);
+  const auto turns = std::ranges::find(report.checks, std::string("orientation"), &Check::name);
+  if (turns != report.checks.end() && turns->passed && !mesh.rounded_valid())
+    add_failure(chains, -1, "all triangles are counterclockwise with rounded coordinates, but rounded_valid is false");
+  chains.passed = chains.failures == 0;
   report.ok = report.ok && chains.passed;
   report.checks.push_back(std::move(chains));
   if (report.ok) {  // else there is no mesh to walk through

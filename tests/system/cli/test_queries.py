@@ -202,6 +202,20 @@ class SegmentsOfQueries(CliTest):
         self.cadt("raster", "x.poly", "--crossing", "exact", "--res", "4", "-o", "d.npy", "-q")
         self.assertEqual(read_npy(self.path("d.npy").read_bytes()), ((1, 1), [2]))
 
+    def test_heights_at_the_same_places(self):
+        """Those of the points count, and a warning says so."""
+        self.write("line.geojson", '{"type":"LineString","coordinates":[[0,0,7],[5,1,0],[10,0,9]]}')
+        warning = "line.geojson: 2 of its points have other heights than those of the input at the same places, the first at 0 0"
+        words = ("flat.xyz", "--segments", "line.geojson")
+        result = self.cadt("raster", *words, "--res", "5", "-o", "d.npy")  # .geojson, but not for cadt-terrain
+        self.assertIn(warning, result.err)
+        self.assertEqual(read_npy(self.path("d.npy").read_bytes())[1], [0, 0, 0, 0])
+        self.cadt("raster", "flat.xyz", "--segments=line.geojson", "--res", "5", "-o", "d.npy", "-q")
+        self.assertIn(warning, self.cadt("triangulate", *words, "-o", "m.off").err)
+        self.assertEqual(self.cadt("triangulate", *words, "-o", "m.off", "-q").err, "")
+        self.write("same.obj", "v 10 0 0\nv 0 0 0\nv 1 3 8\nl 1 2 3\n")
+        self.assertNotIn("warning", self.cadt("triangulate", "flat.xyz", "--segments", "same.obj", "-o", "m.off").err)
+
     def test_what_is_refused(self):
         self.write("thin.xyz", "0 0 0\n10 0 0\n5 1 1\n5 -1 1\n")
         self.write("long.edg", "1\n0 0 10 0\n")
@@ -211,7 +225,7 @@ class SegmentsOfQueries(CliTest):
         for words in (("locate", *ask, "--nearest"), ("interpolate", *ask, "--values", "v.txt", "--method", "natural")):
             self.write("v.txt", "1\n" * 6)
             self.fails(2, *words, says="not all triangles are Delaunay")
-        self.fails(3, "interpolate", *ask, says=["heights are left out: long.edg has none", "with long.edg: no values"])
+        self.fails(3, "interpolate", *ask, says=["heights are left out: long.edg has none", "with long.edg: no values", "third coordinate each"])
         self.fails(2, "locate", *ask, "-o", "long.edg", "-t", "txt", says="this is the input")
         self.fails(2, "locate", "thin.xyz", "q.xy", "--crossing", "exact", says="--crossing is about segments")
         self.fails(2, "raster", "thin.xyz", "--segments", "-", "--res", "1", "-o", "d.npy", says="standard input is for IN")

@@ -22,6 +22,7 @@ inline std::unique_ptr<ConstrainedTriangulation::Data> copy_of(const Constrained
   data->added.assign(mesh.added_points().begin(), mesh.added_points().end());
   data->moved.assign(mesh.moved_points().begin(), mesh.moved_points().end());
   data->parents.assign(mesh.added_parents().begin(), mesh.added_parents().end());
+  data->degenerate.assign(mesh.degenerate_segments().begin(), mesh.degenerate_segments().end());
   data->rounded_valid = mesh.rounded_valid();
   return data;
 }

@@ -100,6 +100,32 @@ TEST(AdversariesOnOneThread, ALongPieceThatMeetsShortOnes) {
   }
 }
 
+/// Parallel segments that one crosses. The mesh of rounded places is not taken where they are long and close together,
+/// and crossings that are inserted one behind the other then change all triangles that are left: 50 times as long.
+TEST(AdversariesOnOneThread, CrossingsAlongASegment) {
+  constexpr int n = 24000;
+  const auto seconds = [](double distance, double height) {
+    std::vector<double> xy = {-distance, 0, n * distance, 0};
+    std::vector<Segment> segments = {{0, 1}};
+    for (int i = 0; i < n; ++i) {
+      const double x = (i + 0.5) * distance;
+      xy.insert(xy.end(), {x, height, x, -height});
+      segments.push_back({2 * i + 2, 2 * i + 3});
+    }
+    Options options;
+    options.backend = Backend::host;
+    options.threads = 1;
+    ConstraintOptions constraints;
+    constraints.crossing = Crossing::exact;
+    const auto begin = std::chrono::steady_clock::now();
+    const ConstrainedTriangulation mesh = triangulate_constrained(xy, segments, constraints, options);
+    EXPECT_EQ(mesh.added_parents().size(), std::size_t{n});
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const double short_ones = seconds(1, 1), long_ones = seconds(1.0 / n, 100);
+  EXPECT_LT(long_ones, 20 * short_ones + 2) << short_ones;
+}
+
 TEST_P(Adversaries, UlpsAroundASegment) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);

@@ -68,14 +68,13 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
                 f"its reference system is {name_of(crs)}, that of the points is {name_of(cloud.crs)}; transform one of "
                 "them, or name the one that is right with --crs",
             )
-    empty = [k for k, data in enumerate(geometry) if data is None]
-    if empty:
-        raise FileError(path, f"feature {empty[0]} (counted from 0) has no geometry")
+    given = np.flatnonzero([data is not None for data in geometry])  # without a geometry it is as with an empty one
     try:
-        xyz, offsets, of_features = lines_of_wkb(geometry, (LINE, POLYGON, MULTILINE, MULTIPOLYGON))
+        xyz, offsets, of_features = lines_of_wkb(geometry[given], (LINE, POLYGON, MULTILINE, MULTIPOLYGON))
     except cadt.InputError as error:
-        raise FileError(path, f"feature {error.index} (counted from 0) is neither lines nor polygons") from error
-    feature = np.repeat(np.arange(len(geometry)), np.diff(of_features))
+        said = f"feature {given[error.index]} (counted from 0) is neither lines nor polygons"
+        raise FileError(path, said) from error
+    feature = np.repeat(given, np.diff(of_features))
     lost = np.flatnonzero(~np.isfinite(xyz[:, :2]).all(axis=1) | np.isinf(xyz[:, 2]))  # NaN: without a height
     if len(lost):
         line = int(np.searchsorted(offsets, lost[0], side="right")) - 1

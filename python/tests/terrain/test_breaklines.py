@@ -243,6 +243,12 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) has no finite coordinates")
     name = write(tmp_path / "point.gpkg", [bank(40), shapely.Point(AT)])
     cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) is neither lines nor polygons")
+    name = write(tmp_path / "hole.gpkg", [None, bank(40), None, shapely.Point(AT)])
+    cadt_terrain(*base, name, code=3, says="feature 3 (counted from 0) is neither lines nor polygons")
+    name = write(tmp_path / "hole.gpkg", [None, bank(40), None, bank(60), across])
+    cadt_terrain(*base, name, code=3, says="features 1 and 4 (counted from 0) cross")
+    name = write(tmp_path / "hole.gpkg", [None, bank(40), None])
+    assert "breaklines  1, with 3 points" in cadt_terrain(*base, name).err
     name = write(tmp_path / "utm33.gpkg", [bank(40)], "EPSG:25833")
     cadt_terrain(*base, name, code=3, says="its reference system is ETRS89 / UTM zone 33N")
     cadt_terrain(*base, name, "--crs", "EPSG:25832")

@@ -171,19 +171,21 @@ void note_holes(const Graph& graph, const SegmentOptions& options) {
   say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
 }
 
-void note_other_heights(const Graph& graph, PointsView points, std::span<const double> height,
-                        const Triangulation& mesh, const std::string& name) {
+void note_other_heights(const io::PointSet& points, std::size_t own_points, const Triangulation& mesh,
+                        const std::string& name) {
+  const auto& height = points.height;
+  if (height.empty()) return;
   std::size_t others = 0, first = 0;
   for (const auto& [point, representative] : mesh.duplicates()) {
     const auto i = static_cast<std::size_t>(point), of = static_cast<std::size_t>(representative);
-    if (height.empty() || of >= graph.own_points || i < graph.own_points || height[i] == height[of]) continue;
+    if (of >= own_points || i < own_points || height[i] == height[of]) continue;
     if (others++ == 0) first = i;
   }
   if (others == 0) return;
   say(fmt::format(
       "cadt: warning: {}: {} of its points have other heights than those of the input at the same places, the "
       "first at {} {}: those of the input are taken\n",
-      name, others, points.x(first), points.y(first)));
+      name, others, points.xy[2 * first], points.xy[2 * first + 1]));
 }
 
 Graph graph_of(io::SegmentsFile file) {

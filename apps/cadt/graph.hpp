@@ -49,9 +49,10 @@ void note_no_heights(const std::string& name, bool some);
 /// A note if the file has holes that --domain leaves out of account.
 void note_holes(const Graph& graph, const SegmentOptions& options);
 
-/// A note if points of --segments have other heights than those of the input at the same places, which count.
-void note_other_heights(const Graph& graph, PointsView points, std::span<const double> height,
-                        const Triangulation& mesh, const std::string& name);
+/// A note if points of --segments, those from `own_points` on, have other heights than those of the input at the same
+/// places, which count.
+void note_other_heights(const io::PointSet& points, std::size_t own_points, const Triangulation& mesh,
+                        const std::string& name);
 
 /// What the library is told, with what the file says of seeds. Throws Failure (usage).
 [[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph = {});

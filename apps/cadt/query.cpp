@@ -103,7 +103,7 @@ void QueryRun::make_mesh() {
         triangulate_graph(points.view(), graph_->segments, name_, constraint_options(options_.segments), library_);
     check_interrupt();
     if (options_.values == "z" && !options_.quiet)
-      note_other_heights(*graph_, points.view(), points.height, constrained_->mesh(), options_.segments.file);
+      note_other_heights(points, graph_->own_points, constrained_->mesh(), options_.segments.file);
     if (!constrained_->rounded_valid())
       throw Failure(exit_file,
                     name_ +
@@ -128,18 +128,12 @@ void QueryRun::make_mesh() {
 
 io::Values QueryRun::read_values() const {
   if (options_.values == "z") {
-    if (points.height.empty() && graph_) {
-      throw Failure(
-          exit_file,
-          fmt::format("{}: no values: the points and those of the segments need a third coordinate each; or name a "
-                      "file with a row for each point with --values FILE",
-                      name_));
-    }
     if (points.height.empty()) {
-      throw Failure(exit_file,
-                    fmt::format("{}: no values: the points have no third coordinate; name three columns with "
-                                "--columns x,y,depth, or a file with a row for each point with --values FILE",
-                                name_));
+      const char* const why = graph_
+                                  ? "the points and those of the segments need a third coordinate each"
+                                  : "the points have no third coordinate; name three columns with --columns x,y,depth";
+      throw Failure(exit_file, fmt::format("{}: no values: {}, or a file with a row for each point with --values FILE",
+                                           name_, why));
     }
     return {points.height, 1};
   }

@@ -46,8 +46,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   report.constrained = &mesh;
   report.triangulate_seconds = watch.lap();
   line.clear();
-  if (!options.quiet)
-    note_other_heights(graph, graph.points.view(), graph.points.height, mesh.mesh(), options.segments.file);
+  if (!options.quiet) note_other_heights(graph.points, graph.own_points, mesh.mesh(), options.segments.file);
   judge_dimension(mesh.mesh(), name, options);
   if (mesh.mesh().dimension() >= 2 && mesh.number_inside() == 0) {
     const std::string why = fmt::format("{}: no triangles: no region is inside by --domain {}; --domain hull keeps all",

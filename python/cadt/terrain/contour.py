@@ -34,7 +34,10 @@ Lines = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
 
 def contour_lines(
     mesh: cadt.Delaunay | cadt.ConstrainedDelaunay,
-    z: NDArray[np.float64], interval: float, base: float = 0.0, max_edge: float | None = None
+    z: NDArray[np.float64],
+    interval: float,
+    base: float = 0.0,
+    max_edge: float | None = None,
 ) -> Lines:
     """Contour lines at base + k interval.
 

@@ -11,7 +11,7 @@
 #include "common/certify/certify.dev.h"
 #include "common/constraints/domains/domains.dev.h"
 #include "common/constraints/insert/few_pieces.dev.h"
-#include "common/constraints/insert/segment_mountain.dev.h"
+#include "common/constraints/insert/random_insertion.dev.h"
 #include "common/insertion/base_mesh.dev.h"
 #include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"

@@ -29,8 +29,7 @@ class MeshEditor {
   /// Makes the edges between consecutive vertices of a wall's chain constrained ones, and the rest Delaunay again: the
   /// triangles that an edge crosses go, and both sides are triangulated anew (M. V. Anglada, "An improved incremental
   /// algorithm for constructing restricted Delaunay triangulations", Computers & Graphics 21, 1997). O(degree of the
-  /// end that has fewer edges + k log k) for k crossed triangles; k^2 in the worst case, if a side does not divide well
-  /// and is no mountain (mountain.hpp). \throws InternalError
+  /// end that has fewer edges + k log k) for k crossed triangles, expected. \throws InternalError
   void insert_chain(std::span<const std::int32_t> chain);
 
   [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return vertices_; }
@@ -81,7 +80,7 @@ class MeshEditor {
   void close(const Side& side, std::int32_t i, Edge edge);
   [[nodiscard]] std::int32_t take_triangle();
   [[nodiscard]] std::int32_t fill(const Side& side);
-  [[nodiscard]] bool fill_mountain(const Side& side, std::int32_t low, std::int32_t high, Edge parent);
+  [[nodiscard]] bool fill_at_random(const Side& side, std::int32_t low, std::int32_t high, Edge parent);
   void join_slits();
 
   const Arrangement& in_;

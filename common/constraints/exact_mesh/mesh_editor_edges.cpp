@@ -2,12 +2,13 @@
 // Constrained edges of the mesh editor.
 #include "common/constraints/exact_mesh/mesh_editor.hpp"
 
-#include "common/constraints/exact_mesh/mountain.hpp"
+#include "common/constraints/exact_mesh/random_insertion.hpp"
 
 #include <cadt/errors.hpp>
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 namespace cadt::constraints {
 namespace {
@@ -157,7 +158,7 @@ std::int32_t MeshEditor::take_triangle() {
 /// triangle at that edge, which is its edge 2. All vertices of a part of the chain are left of the edge between its
 /// ends: each had an edge that crossed the new one, and these do not cross each other. A vertex from which a slit hangs
 /// comes twice; what hangs there is between its edges that crossed, so inside its circle, and it is not chosen before
-/// that. A chain that does not divide well takes quadratic time, but for a mountain.
+/// that. What is left of a chain that does not divide well is filled by random insertion.
 std::int32_t MeshEditor::fill(const Side& side) {
   const auto at = [&](std::int32_t i) { return side.chain[static_cast<std::size_t>(i)]; };
   std::int32_t top = -1;
@@ -173,8 +174,8 @@ std::int32_t MeshEditor::fill(const Side& side) {
     if (high - low > long_range) check_stop_();
     work -= high - low;
     if (work < 0 && high - low > long_range && parent.triangle >= 0) {
-      if (fill_mountain(side, low, high, parent)) continue;
-      work = std::int64_t{usual_work} * (high - low);  // a part may be one, but looking takes as long as an apex
+      if (fill_at_random(side, low, high, parent)) continue;
+      work = std::int64_t{usual_work} * (high - low);
     }
     std::int32_t best = low + 1;  // the one whose circle with the ends has no other inside
     for (std::int32_t i = low + 2; i < high; ++i) {
@@ -193,25 +194,25 @@ std::int32_t MeshEditor::fill(const Side& side) {
   return top;
 }
 
-/// The part of the chain from vertex `low` to `high`. False if that is no mountain.
-bool MeshEditor::fill_mountain(const Side& side, std::int32_t low, std::int32_t high, Edge parent) {
+/// The part of the chain from vertex `low` to `high`. False: that is not possible.
+bool MeshEditor::fill_at_random(const Side& side, std::int32_t low, std::int32_t high, Edge parent) {
   std::vector<exact::Place> chain;
   for (std::int32_t i = low; i <= high; ++i) chain.push_back(in_.place(side.chain[static_cast<std::size_t>(i)]));
-  if (!is_mountain(chain)) return false;
-  const MountainMesh mesh = triangulate_mountain(exact_, chain);
-  std::vector<std::int32_t> number(mesh.triangles.size());
+  const std::optional<ChainMesh> mesh = insert_at_random(exact_, chain, check_stop_);
+  if (!mesh) return false;
+  std::vector<std::int32_t> number(mesh->triangles.size());
   for (std::int32_t& t : number) t = take_triangle();
   for (std::size_t i = 0; i < number.size(); ++i) {
     std::array<std::int32_t, 3> vertices{}, neighbors{};
     for (std::size_t k = 0; k < 3; ++k) {
-      vertices[k] = side.chain[static_cast<std::size_t>(low + mesh.triangles[i][k])];
-      const std::int32_t other = mesh.neighbors[i][k];
-      neighbors[k] = other < 0 ? -1 : number[static_cast<std::size_t>(other)];
+      vertices[k] = side.chain[static_cast<std::size_t>(low + mesh->triangles[i][k])];
+      const std::int32_t other = mesh->across[3 * i + k];
+      neighbors[k] = other < 0 ? -1 : number[static_cast<std::size_t>(other / 3)];
     }
     set(number[i], vertices, neighbors);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (mesh.neighbors[i][k] >= 0) continue;
-      const std::int32_t a = mesh.triangles[i][(k + 1) % 3], b = mesh.triangles[i][(k + 2) % 3];
+      if (mesh->across[3 * i + k] >= 0) continue;
+      const std::int32_t a = mesh->triangles[i][(k + 1) % 3], b = mesh->triangles[i][(k + 2) % 3];
       const auto edge = static_cast<std::int32_t>(k);
       if (std::abs(a - b) == 1) {
         close(side, low + std::min(a, b), {number[i], edge});

@@ -17,7 +17,7 @@
 #ifndef CADT_CONSTRAINTS_SEGMENT_CAVITY_H
 #define CADT_CONSTRAINTS_SEGMENT_CAVITY_H
 
-#include "common/constraints/insert/segment_mountain.dev.h"
+#include "common/constraints/insert/random_insertion.dev.h"
 #include "common/portable/teams.dev.h"
 
 /* ---- the two polygons ---- */
@@ -104,10 +104,13 @@ CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings
 
 enum { CADT_CHAIN_STACK = 32 /* the longer side of each triangle waits: each next one is at most half as long */ };
 
-/* A chain that divides well takes a few times its length and its logarithm to be filled. Mountains above
- * CADT_MOUNTAIN_SMALL that are left when the work of so many times the length is done are filled by
- * cadt_fill_mountain, whose triangles take as long as about so many places. */
-enum { CADT_CHAIN_WORK = CADT_CONTIGUOUS ? 40 : 8, CADT_MOUNTAIN_SMALL = 64 };
+/* A chain that divides well takes a few times its length and its logarithm to be filled. What is left, above
+ * CADT_CHAIN_SMALL, when the work of so many times the length is done is filled by random insertion, where a vertex
+ * takes as long as about so many places. */
+#ifndef CADT_CHAIN_WORK /* a test takes less */
+#define CADT_CHAIN_WORK (CADT_CONTIGUOUS ? 40 : 8)
+#define CADT_CHAIN_SMALL 64
+#endif
 
 /* All triangles of a chain. */
 CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_chain c,
@@ -117,20 +120,16 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
   cadt_u64 work = CADT_CAST(cadt_u64, c.high - c.low) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
   for (;;) {
     const cadt_u32 size = c.high - c.low;
-    const cadt_u32 looks = work < size && size > CADT_CAST(cadt_u32, CADT_MOUNTAIN_SMALL) ? 1u : 0u;
-    if (looks && cadt_is_mountain(m, rings, &c)) {
-      const cadt_u32 base = cadt_fill_mountain(m, rings, &c, counters);
-      if (base == CADT_NONE) {
-        cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
-        return;
+    if (work < size && size > CADT_CAST(cadt_u32, CADT_CHAIN_SMALL)) {
+      const cadt_u32 base = cadt_fill_at_random(m, rings, &c, counters);
+      if (base != CADT_NONE) {
+        cadt_close_base(m, &c, base, bases);
+        if (!waiting) return;
+        c = stack[--waiting];
+        continue;
       }
-      cadt_close_base(m, &c, base, bases);
-      if (!waiting) return;
-      c = stack[--waiting];
-      continue;
+      work = CADT_CAST(cadt_u64, size) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
     }
-    /* A part of what is no mountain may be one, but looking takes as long as an apex. */
-    if (looks) work = CADT_CAST(cadt_u64, size) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
     work = work < size ? 0u : work - size;
     const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, 0u, 1u, counters);
     if (apex == CADT_NONE) {

@@ -202,6 +202,34 @@ Drawing loose_ends(int n) {
   return d;
 }
 
+/// Two columns of points and a rung at their top: below it the chain goes down, across and up again.
+Drawing columns(int n, bool all_rungs) {
+  Drawing d;
+  Random random(10);
+  for (int i = 0; i < n; ++i) {
+    const double low = 0.5 * (i + 0.5) / n, wide = 0.1 * random.uniform() / n;
+    d.add(-1, low + wide);
+    d.add(2, low + 0.1 * random.uniform() / n);
+  }
+  d.add(0.5, 1);
+  for (int i = all_rungs ? 0 : n - 1; i < n; ++i) d.join(2 * i, 2 * i + 1);
+  return d;
+}
+
+/// Slanted teeth stand above a segment, with points below them: its side goes back again and again.
+Drawing slanted_teeth(int n) {
+  Drawing d;
+  const std::int32_t left = d.add(-10, 0.95), right = d.add(n + 5, 0.95);
+  for (int i = 0; i < n; ++i) {
+    const std::int32_t root = d.add(i, 1), tip = d.add(i - 2.0, 3);
+    d.join(root, tip);
+    d.add(i - 0.3, 1.8);
+    d.add(i + 0.5, 0.9);
+  }
+  d.join(left, right);
+  return d;
+}
+
 /// Points along the outline of a rectangle, or of a turned ellipse, and one segment across. Its sides turn corners, and
 /// ascend neither in x nor in y all along.
 Drawing outline_across(int n, bool ellipse) {
@@ -244,7 +272,10 @@ const std::vector<Adversary>& adversaries() {
                                              {"rectangle", [](int n) { return outline_across(3 * n, false); }},
                                              {"turned_ellipse", [](int n) { return outline_across(3 * n, true); }},
                                              {"parabola", [](int n) { return parabola_beside(n / 2); }},
-                                             {"loose_ends", [](int n) { return loose_ends(n / 2); }}};
+                                             {"loose_ends", [](int n) { return loose_ends(n / 2); }},
+                                             {"slanted_teeth", [](int n) { return slanted_teeth(n / 4); }},
+                                             {"columns", [](int n) { return columns(n / 2, false); }},
+                                             {"rungs_of_columns", [](int n) { return columns(n / 2, true); }}};
   return all;
 }
 

@@ -45,21 +45,6 @@ TEST_P(Adversaries, Small) {
   }
 }
 
-/// Slanted teeth stand above a segment, with points below them: its side goes back again and again, and is no mountain.
-TEST_P(Adversaries, SlantedTeethAboveASegment) {
-  Drawing d;
-  constexpr int n = 1000;
-  const std::int32_t left = d.add(-10, 0.95), right = d.add(n + 5, 0.95);
-  for (int i = 0; i < n; ++i) {
-    const std::int32_t root = d.add(i, 1), tip = d.add(i - 2.0, 3);
-    d.join(root, tip);
-    d.add(i - 0.3, 1.8);
-    d.add(i + 0.5, 0.9);
-  }
-  d.join(left, right);
-  check(d.xy, d.segments);
-}
-
 TEST_P(Adversaries, LargeOnesTakeNoQuadraticTime) {
   const int n = GetParam().backend == Backend::opencl ? 20000 : 50000;
   for (const Adversary& adversary : adversaries()) {

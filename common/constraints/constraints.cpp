@@ -331,7 +331,7 @@ class Constrainer {
     launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, wins, bases, longer, others, words_);
     if (!queues) return;
     std::uint32_t short_chains = 0;
-    for (int launch = 1;; ++launch) {
+    for (;;) {
       const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
       const std::uint32_t waiting = found[CADT_SEGMENTS_LONG_CHAINS];
       short_chains = found[CADT_SEGMENTS_CHAINS];
@@ -342,9 +342,8 @@ class Constrainer {
       std::uint32_t lanes = CADT_CHAIN_LANES;  // fewer for many chains, as all of them run at a time
       while (lanes > 64 && std::size_t{waiting} * lanes > ctx_.device.shape().resident) lanes /= 2;
       const LaunchGrid teams = launch_.grid_of_teams(waiting, lanes);
-      launch_.run_in_groups<KernelId::cadt_divide_chains>(
-          teams.items, lanes, segment_mesh(), rings, chains, teams,
-          launch < CADT_CHAIN_LAUNCHES ? std::uint32_t{CADT_CHAIN_LONG} : CADT_NONE, bases, longer, others, words_);
+      launch_.run_in_groups<KernelId::cadt_divide_chains>(teams.items, lanes, segment_mesh(), rings, chains, teams,
+                                                          bases, longer, others, words_);
     }
     launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(short_chains), bases,
                                             words_);

@@ -149,16 +149,10 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
 }
 
 /* On GPUs, chains longer than CADT_CHAIN_LONG are divided by teams, those above CADT_CHAIN_SHORT filled by work-items
- * of their own afterwards. A team goes on with the longer side of each triangle, up to so many triangles a launch, and
- * leaves the other one, which is at most half as long, to another team. What is long after so many launches, a
- * work-item fills. */
-enum {
-  CADT_CHAIN_SHORT = 8,
-  CADT_CHAIN_LONG = 24,
-  CADT_CHAIN_LANES = 256,
-  CADT_CHAIN_TURNS = 4096,
-  CADT_CHAIN_LAUNCHES = 64
-};
+ * of their own afterwards. A team goes on with the longer side of each triangle and leaves the other one, which is at
+ * most half as long, to another team in the next launch. What is long after so many triangles does not divide well: a
+ * work-item fills it. */
+enum { CADT_CHAIN_SHORT = 8, CADT_CHAIN_LONG = 24, CADT_CHAIN_LANES = 256, CADT_CHAIN_TURNS = 4096 };
 
 /* Chains that are left to another launch. */
 typedef struct {
@@ -212,11 +206,10 @@ CADT_KERNEL(cadt_fill_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAME
   }
 }
 
-/* Divides the long chains of the launch before, a team each. What is longer than `longest` is left to teams again. */
+/* Divides the long chains of the launch before, a team each. */
 CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 4, cadt_divide_chains, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS,
-                 CADT_GLOBAL const cadt_chain* chains, cadt_u32 count, cadt_u32 grain, cadt_u32 longest,
-                 CADT_GLOBAL cadt_u32* bases, CADT_GLOBAL cadt_chain* longer, CADT_GLOBAL cadt_chain* others,
-                 CADT_GLOBAL cadt_u32* words) {
+                 CADT_GLOBAL const cadt_chain* chains, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* bases,
+                 CADT_GLOBAL cadt_chain* longer, CADT_GLOBAL cadt_chain* others, CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
   CADT_RINGS(rings);
   CADT_DECLARE_COUNTERS(counters);
@@ -241,7 +234,8 @@ CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 4, cadt_divide_chains, CADT_SEGMENT_MESH_PARA
         cadt_write_base(&mesh, &rings, &c, apex, bases, sides);
         for (cadt_u32 k = 0u; k < 2u; ++k)
           if (k != further || ends)
-            cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT, longest, words, &counters);
+            cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT,
+                               k == further ? CADT_NONE : CADT_CAST(cadt_u32, CADT_CHAIN_LONG), words, &counters);
       }
       if (ends) break;
       c = sides[further];

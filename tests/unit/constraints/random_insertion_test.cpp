@@ -185,7 +185,7 @@ TEST(RandomInsertion, OfTeethAndColumns) {
     teeth.add(-10, 0.5);
     teeth.add(60, 0.5);
     for (int i = 0; i < 40; ++i) {
-      const std::int32_t root = teeth.add(i, 0.6 + 0.3 * random.uniform()),
+      const std::int32_t root = teeth.add(i, 0.53 + 0.05 * random.uniform()),
                          tip = teeth.add(i - 2.0, 3 + random.uniform());
       if (random.below(4) != 0) teeth.segments.push_back({root, tip});
       teeth.add(i - 0.3, 1.8);

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import json
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +52,7 @@ def inputs_of(options: argparse.Namespace) -> list[str]:
     return [*options.inputs, *([options.breaklines] if options.breaklines is not None else [])]
 
 
-def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
+def read_breaklines(path: str, cloud: Cloud, asked: str | None, line: ProgressLine) -> Breaklines:
     """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
     ogr = _pyogrio(f"reading {path}")
     layer = only_layer(ogr, path, "lines")
@@ -60,9 +62,11 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
         raise FileError(path, f"cannot be read: {why(error)}") from error
     if len(geometry) < layer.count and suffix_of(path) != "shp":
         raise truncated(path, len(geometry), layer.count)
-    if asked is None:
-        crs = parse_crs(path, layer.crs)
-        if not same_crs(crs, cloud.crs):
+    crs = parse_crs(path, layer.crs)
+    if not same_crs(crs, cloud.crs):
+        if asked is not None and crs is not None:
+            line.warn(f"{path}: its reference system is {name_of(crs)}; it is taken for {name_of(cloud.crs)}, as --crs says")
+        if asked is None:
             raise CrsError(
                 path,
                 f"its reference system is {name_of(crs)}, that of the points is {name_of(cloud.crs)}; transform one of "
@@ -77,9 +81,34 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     feature = np.repeat(given, np.diff(of_features))
     lost = np.flatnonzero(~np.isfinite(xyz[:, :2]).all(axis=1) | np.isinf(xyz[:, 2]))  # NaN: without a height
     if len(lost):
-        line = int(np.searchsorted(offsets, lost[0], side="right")) - 1
-        raise FileError(path, f"feature {feature[line]} (counted from 0) has no finite coordinates")
+        first = int(np.searchsorted(offsets, lost[0], side="right")) - 1
+        raise FileError(path, f"feature {feature[first]} (counted from 0) has no finite coordinates")
+    if suffix_of(path) == "geojson" and (xyz[:, 2] == 0).any():
+        xyz[_without_height(path, given, len(xyz)), 2] = np.nan
     return Breaklines(path, xyz, offsets, feature)
+
+
+def _without_height(path: str, features: NDArray[np.integer], count: int) -> NDArray[np.bool_]:
+    """The positions of these features of a GeoJSON file that have no height; GDAL takes it for 0 where others of the
+    feature have one."""
+    found: list[bool] = []
+
+    def add(coordinates: list[Any]) -> None:
+        if coordinates and not isinstance(coordinates[0], list):
+            found.append(len(coordinates) < 3)
+        else:
+            for part in coordinates:
+                add(part)
+
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            root = json.load(file)
+        all_features = root["features"] if root["type"] == "FeatureCollection" else [root]
+        for i in features:
+            add(all_features[i].get("geometry", all_features[i])["coordinates"])
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
+        found = []  # what GDAL reads otherwise
+    return np.array(found) if len(found) == count else np.zeros(count, bool)
 
 
 def leave_out_far(lines: Breaklines, cloud: Cloud, line: ProgressLine) -> Breaklines:
@@ -119,7 +148,7 @@ def terrain_of(cloud: Cloud, options: argparse.Namespace, line: ProgressLine) ->
     name = ", ".join(cloud.sources)
     if options.breaklines is None:
         return Terrain(triangulate(cloud.xy, name, options, line), cloud.z, {})
-    lines = leave_out_far(read_breaklines(options.breaklines, cloud, options.crs), cloud, line)
+    lines = leave_out_far(read_breaklines(options.breaklines, cloud, options.crs, line), cloud, line)
     terrain = add_breaklines(cloud, lines, options, line)
     if terrain.mesh.n_triangles == 0:
         raise no_triangles(name, len(cloud))
@@ -150,7 +179,11 @@ def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace,
         raise FileError(lines.path, _crossing(lines, error.pairs)) from error
     line.clear()
     all_z = np.concatenate([z, cloud.z])
-    for said in (_several_heights(lines, z, mesh.duplicate_of), _heights_on_segments(lines, mesh, all_z)):
+    for said in (
+        _far_heights(lines, cloud),
+        _several_heights(lines, z, mesh.duplicate_of),
+        _heights_on_segments(lines, mesh, all_z),
+    ):
         if said:
             line.warn(f"{lines.path}: {said}")
     heights = "the points" if len(missing) == len(z) else "the file"
@@ -169,6 +202,24 @@ def _begins_of_segments(lines: Breaklines) -> NDArray[np.intp]:
     ends = np.zeros(len(lines.xyz), bool)
     ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
     return np.flatnonzero(~ends)
+
+
+def _far_heights(lines: Breaklines, cloud: Cloud) -> str:
+    """The height of the file that is furthest from those of the points, in words, if it is further than these are apart:
+    most often it is none, such as 0 or -9999."""
+    low, high = float(cloud.z.min()), float(cloud.z.max())
+    z = lines.xyz[:, 2]
+    beyond = np.where(np.isnan(z), 0, np.maximum(low - z, z - high))
+    far = np.flatnonzero(beyond > high - low)
+    if len(far) == 0 or high == low:
+        return ""
+    worst = int(np.argmax(beyond))
+    x, y, height = lines.xyz[worst]
+    more = f", and {len(far) - 1} more such points" if len(far) > 1 else ""
+    return (
+        f"feature {_feature_of(lines, np.array([worst]))[0]} (counted from 0) has the height {height:.12g} at {x:.12g} {y:.12g}"
+        f"{more}; those of the points are {low:.12g} to {high:.12g}: is it one, and in the same unit?"
+    )
 
 
 def _several_heights(lines: Breaklines, z: NDArray[np.float64], first_of: NDArray[np.integer]) -> str:
@@ -224,18 +275,19 @@ def _heights_on_segments(lines: Breaklines, mesh: cadt.ConstrainedDelaunay, z: N
 
 
 def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
-    begin = _begins_of_segments(lines)[list(pairs[0])]
-    of = _feature_of(lines, begin)
-    first, last = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
-    ax, ay, cx, cy, bx, by, dx, dy = (Fraction(v) for v in [*first.flat, *last.flat])
-    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
-    along = ((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
-    x, y = float(ax + along * ux), float(ay + along * uy)
-    more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
-    who = f"feature {of[0]} (counted from 0) crosses itself"
-    if of[0] != of[1]:
-        who = f"lines of the features {of[0]} and {of[1]} (counted from 0) cross"
+    places = []
+    for pair in pairs[:5]:
+        begin = _begins_of_segments(lines)[list(pair)]
+        first, last = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
+        ax, ay, cx, cy, bx, by, dx, dy = (Fraction(v) for v in [*first.flat, *last.flat])
+        ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+        along = ((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
+        x, y = float(ax + along * ux), float(ay + along * uy)
+        of = _feature_of(lines, begin)
+        who = f"feature {of[0]} crosses itself" if of[0] == of[1] else f"features {of[0]} and {of[1]} cross"
+        places.append(f"{who} at {x:.12g} {y:.12g}")
+    more = f", and so do {len(pairs) - 5} more pairs of segments" if len(pairs) > 5 else ""
     return (
-        f"{who} at {x:.12g} {y:.12g}{more}; "
-        "breaklines may touch, but have one height at each place: divide or remove them"
+        f"{', '.join(places)}{more} (features counted from 0); breaklines may touch, but not cross: "
+        "give both a point there, or remove one"
     )

@@ -79,6 +79,17 @@ class _Parser(argparse.ArgumentParser):
         write_out(self.format_help())
 
 
+class _Once(argparse.Action):
+    """An option with a value, which the last of several would take from the others."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: str | None = None) -> None:
+        given = namespace.__dict__.setdefault("_given", set())
+        if option_string is not None and self.dest in given:
+            parser.error(f"{option_string} is given twice")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
+
+
 def _classes(text: str) -> list[int]:
     try:
         numbers = [int(word) for word in text.replace(",", " ").split()]
@@ -231,11 +242,12 @@ def parser_of(command: str) -> argparse.ArgumentParser:
     parser = _Parser(
         prog=f"cadt {command}",
         usage=f"cadt {command} IN [IN...] OUT [options]",
-        description=SUMMARIES[command].capitalize() + ".",
+        description=SUMMARIES[command][0].upper() + SUMMARIES[command][1:] + ".",
         epilog=EXAMPLES[command] + "\n" + EXIT_CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
+    parser.register("action", None, _Once)
     _ADD[command](parser)
     return parser
 

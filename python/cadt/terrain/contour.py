@@ -50,6 +50,11 @@ def contour_lines(
     level : (lines,)
         Their heights, ascending.
 
+    Raises
+    ------
+    ValueError
+        `z` has not one finite height for each of the mesh's points.
+
     Notes
     -----
     A vertex whose height is that of a line counts as above it: no case is special, and lines neither branch nor cross.
@@ -57,6 +62,8 @@ def contour_lines(
     corners = np.asarray(mesh.simplices)
     neighbors = np.asarray(mesh.neighbors)
     points = np.asarray(mesh.points)
+    if z.shape != (len(points),) or not np.isfinite(z).all():
+        raise ValueError(f"z must have a finite height for each of the mesh's {len(points)} points, so the shape ({len(points)},)")
     if not float(z.max() - z.min()) / interval < 1 << 31:
         raise UsageError(f"--interval {interval:g}: the heights span {z.max() - z.min():g}; take a larger one")
     # The level of a vertex: the highest line at or below it. A triangle has the lines above its lowest level, up to its

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +84,54 @@ def test_lines_without_heights_get_them_from_the_points(las, tmp_path, cadt_terr
     name = write(tmp_path / "flat.gpkg", [bank(40, z=False)])
     result = cadt_terrain("raster", "scan.laz", "flat.tif", "--res", "1", "--breaklines", name, "--fill", "nearest")
     assert "heights of the points" in result.err and "no data     0" in result.err
+
+
+def test_geojson_of_which_some_positions_have_no_height(las, tmp_path, cadt_terrain):
+    """GDAL takes it for 0."""
+    las("scan.laz", scattered())
+    x, y = AT
+    part = [[x + 20, y + 40, 299], [x + 80, y + 40]]
+    parts = [[[x + 20, y + 50, 298], [x + 50, y + 50, 297]], [[x + 20, y + 60], [x + 50, y + 60]]]
+    ring = [[[x + 60, y + 60, 0], [x + 70, y + 60, 0], [x + 70, y + 70], [x + 60, y + 60, 0]]]
+    geometries = [
+        {"type": "LineString", "coordinates": part},
+        None,
+        {"type": "MultiLineString", "coordinates": parts},
+        {"type": "Polygon", "coordinates": ring},
+    ]
+    (tmp_path / "part.geojson").write_text(
+        json.dumps(
+            {
+                "type": "FeatureCollection",
+                "crs": {"type": "name", "properties": {"name": "EPSG:25832"}},
+                "features": [{"type": "Feature", "properties": {}, "geometry": g} for g in geometries],
+            }
+        )
+    )
+    result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", "part.geojson")
+    assert "breaklines  4, with 10 points; heights of the file, but 4 from the points" in result.err
+    assert "feature 3 (counted from 0) has the height 0 at" in result.err  # a height that the file does give
+    assert "and 2 more such points; those of the points are" in result.err
+    (tmp_path / "one.geojson").write_text(json.dumps({"type": "LineString", "coordinates": part}))
+    result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", "one.geojson", "--crs", "EPSG:25832")
+    assert "with 2 points; heights of the file, but 1 from the points" in result.err
+    assert "warning: one.geojson: its reference system is WGS 84" in result.err
+
+
+def test_heights_far_from_those_of_the_points(las, tmp_path, cadt_terrain):
+    las("scan.laz", scattered())
+    lines = [bank(40), shapely.LineString([(*(AT + [20, 50]), -9999), (*(AT + [80, 50]), 293)])]
+    name = write(tmp_path / "nodata.gpkg", lines)
+    result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", name)
+    assert "warning: nodata.gpkg: feature 1 (counted from 0) has the height -9999 at 500020 5400050; " in result.err
+
+
+@pytest.mark.parametrize("command, out", [("raster", "t.tif"), ("contour", "t.gpkg"), ("tin", "t.ply")])
+def test_an_option_that_is_given_twice_is_refused(las, tmp_path, cadt_terrain, command, out):
+    las("scan.laz", scattered())
+    for words in (["--breaklines", "a.gpkg", "--breaklines=b.gpkg"], ["--class", "2", "--class", "9"], ["-o", out, "--output", out]):
+        result = cadt_terrain(command, "scan.laz", *words, code=2)
+        assert f"error: {words[2].split('=')[0]} is given twice; see: cadt {command} --help" in result.err
 
 
 def test_several_heights_at_a_place(las, tmp_path, cadt_terrain):
@@ -224,9 +273,9 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     across = shapely.LineString([AT + [37, 20], AT + [37, 80]])
     name = write(tmp_path / "cross.gpkg", [bank(40), bank(60), across])
     base = ("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines")
-    cadt_terrain(*base, name, code=3, says="features 0 and 2 (counted from 0) cross at 500037 5400040, and so do 1 more")
+    cadt_terrain(*base, name, code=3, says="features 0 and 2 cross at 500037 5400040, features 1 and 2 cross at 500037 5400060 (")
     name = write(tmp_path / "self.gpkg", [bank(40), shapely.LineString(AT + [[1, 1], [9, 9], [9, 1], [1, 9]])])
-    cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) crosses itself at 500005 5400005; breaklines")
+    cadt_terrain(*base, name, code=3, says="feature 1 crosses itself at 500005 5400005 (features counted from 0); breaklines")
     # Along each other but for rounding, as a line that was drawn twice.
     twice = [
         shapely.LineString([[49.8950087290269, 84.71137417358769], [59.69363076835749, 94.60659324428221]]),
@@ -235,8 +284,8 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     name = write(tmp_path / "twice.gpkg", twice)
     np.savetxt(tmp_path / "small.xyz", scattered() - [*AT, 0])
     small = ("raster", "small.xyz", "dem.tif", "--res", "1", "--crs", "EPSG:25832", "--breaklines")
-    err = cadt_terrain(*small, name, code=3, says="features 0 and 1 (counted from 0) cross at ").err
-    x, y = (float(word) for word in err.split("cross at ")[1].split(";")[0].split())
+    err = cadt_terrain(*small, name, code=3, says="features 0 and 1 cross at ").err
+    x, y = (float(word) for word in err.split("cross at ")[1].split(" (")[0].split())
     assert 49 < x < 60 and 84 < y < 95
     high = shapely.LineString([[*AT, 1], [*(AT + [9, 9]), np.inf]])
     name = write(tmp_path / "high.gpkg", [bank(40), high])
@@ -246,7 +295,7 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     name = write(tmp_path / "hole.gpkg", [None, bank(40), None, shapely.Point(AT)])
     cadt_terrain(*base, name, code=3, says="feature 3 (counted from 0) is neither lines nor polygons")
     name = write(tmp_path / "hole.gpkg", [None, bank(40), None, bank(60), across])
-    cadt_terrain(*base, name, code=3, says="features 1 and 4 (counted from 0) cross")
+    cadt_terrain(*base, name, code=3, says="features 1 and 4 cross at ")
     name = write(tmp_path / "hole.gpkg", [None, bank(40), None])
     assert "breaklines  1, with 3 points" in cadt_terrain(*base, name).err
     name = write(tmp_path / "utm33.gpkg", [bank(40)], "EPSG:25833")

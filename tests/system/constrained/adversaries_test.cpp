@@ -60,8 +60,8 @@ TEST_P(Adversaries, LargeOnesTakeNoQuadraticTime) {
       large = cost(d);
     }
     EXPECT_FALSE(too_slow()) << large.seconds << " s, a tenth of it " << small.seconds << " s";
-    // Beside those of the Delaunay mesh. Each time that what is left halves takes some 20 launches, and on GPUs some more
-    // for long chains. CPUs take few long pieces at a time.
+    // Beside those of the Delaunay mesh. Each time that what is left halves takes some 20 launches, and on GPUs some
+    // more for long chains. CPUs take few long pieces at a time.
     const std::uint64_t few_at_a_time = GetParam().backend == Backend::cuda ? 0 : d.segments.size() / 8;
     const std::uint64_t plain = triangulate(d.xy, GetParam().options()).statistics().launches;
     EXPECT_LT(large.statistics.launches, plain + 600 + static_cast<std::uint64_t>(200 * std::log2(n)) + few_at_a_time);

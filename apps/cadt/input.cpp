@@ -99,10 +99,14 @@ void require_format(const std::string& path, const std::string& asked, const std
   const std::string suffix = lower(fs::path(path).extension().string());
   if (suffix == ".cadt" && !fs::exists(path, code)) throw io::FileError(path, 0, "there is no such folder");
   if (!suffix.empty() && std::find(known.begin(), known.end(), suffix.substr(1)) != known.end()) return;
+  const bool of_gdal =
+      suffix == ".shp" || suffix == ".gpkg" || suffix == ".fgb" || suffix == ".gml" || suffix == ".kml";
+  const bool geojson = std::find(known.begin(), known.end(), "geojson") != known.end();
   throw Failure(
       exit_usage,
-      fmt::format("{}: {}; {} one of: {}", path, suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'",
-                  option.empty() ? "it has to be" : "name the format with " + option + ",", join(known, " ")));
+      fmt::format("{}: {}; {} one of: {}{}", path, suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'",
+                  option.empty() ? "it has to be" : "name the format with " + option + ",", join(known, " "),
+                  of_gdal && geojson ? "; ogr2ogr OUT.geojson " + path + " makes one of them" : ""));
 }
 
 void require_columns(const std::string& columns, const std::string& option) {

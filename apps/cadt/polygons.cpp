@@ -49,17 +49,19 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
   return text;
 }
 
-/// Whether the polygon can have an inside if its rings may cross; then rings of one or two points bound nothing.
-bool may_have_inside(PolygonStatus status) {
-  return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing ||
-         status == PolygonStatus::too_few_points;
+bool crosses(PolygonStatus status) {
+  return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing;
 }
 
-std::int64_t points_of(const io::PolygonsFile& file, std::int64_t p) {
-  const auto ring = [&](std::int64_t polygon) {
-    return static_cast<std::size_t>(file.polygon_offsets[static_cast<std::size_t>(polygon)]);
-  };
-  return file.ring_offsets[ring(p + 1)] - file.ring_offsets[ring(p)];
+/// Whether the polygon can have an inside if its rings may cross; then rings of one or two points bound nothing.
+bool may_have_inside(PolygonStatus status) { return crosses(status) || status == PolygonStatus::too_few_points; }
+
+/// Whether a ring has three points, though others have fewer.
+bool has_ring(const io::PolygonsFile& file, std::int64_t polygon) {
+  const auto p = static_cast<std::size_t>(polygon);
+  const auto begin = file.ring_offsets.begin() + file.polygon_offsets[p];
+  const auto end = file.ring_offsets.begin() + file.polygon_offsets[p + 1] + 1;
+  return std::adjacent_find(begin, end, [](auto first, auto next) { return next - first >= 3; }) != end;
 }
 
 /// Points and rings of polygon p, alone.
@@ -111,10 +113,9 @@ std::optional<std::string> append_mended(RegionResult& result, const io::Polygon
     throw Failure(exit_file, fmt::format("{}: {}", name, explain_graph_error(graph.points.view(), graph.segments)));
   }
   if (mesh->number_inside() == 0) {
-    const bool crosses = problem.status != PolygonStatus::too_few_points;
-    return constraints.crossing == Crossing::grid && crosses ? "; nothing is inside on the grid" : "";
+    return constraints.crossing == Crossing::grid && crosses(problem.status) ? "; nothing is inside on the grid" : "";
   }
-  note_rounding(*mesh, fmt::format("{}, polygon {}", name, p), quiet);
+  note_rounding(*mesh, fmt::format("{}, polygon {} of feature {}", name, p, file.features[p]), quiet);
   append_inside(result, *mesh, static_cast<std::int32_t>(result.points.size()));
   result.region.resize(result.triangles.size() / 3);
   std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh->number_inside()), result.region.end(),
@@ -125,39 +126,53 @@ std::optional<std::string> append_mended(RegionResult& result, const io::Polygon
   return std::nullopt;
 }
 
+/// Of the polygons with a defect.
+struct Problems {
+  std::size_t mended = 0, left_out = 0;
+};
+
 /// Those that cross, with a rule for that, and the others with a defect, which are named.
-std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result, const io::PolygonsFile& file,
-                            const PolygonsResult& polygons, const Options& options) {
+Problems handle_problems(const PolygonsCommand& command, RegionResult& result, const io::PolygonsFile& file,
+                         const PolygonsResult& polygons, const Options& options) {
   const std::string name = display_name(command.input, true);
   ConstraintOptions constraints = constraint_options(command.segments);
   constraints.domain = Domain::even_odd;
   std::string text;
-  std::size_t count = 0;
-  bool mendable = false;
+  Problems problems;
+  bool some_cross = false, some_have_rings = false;
   for (const PolygonProblem& problem : polygons.problems()) {
     check_interrupt();
     std::string why;
     if (constraints.crossing != Crossing::error && may_have_inside(problem.status)) {
       const auto left_out = append_mended(result, file, problem, name, constraints, options, command.quiet);
-      if (!left_out) continue;
+      if (!left_out) {
+        ++problems.mended;
+        continue;
+      }
       why = *left_out;
     }
-    mendable = mendable || (may_have_inside(problem.status) && points_of(file, problem.polygon) >= 3);
+    some_cross = some_cross || crosses(problem.status);
+    some_have_rings =
+        some_have_rings || (problem.status == PolygonStatus::too_few_points && has_ring(file, problem.polygon));
     constexpr std::size_t most_shown = 10;
-    if (++count <= most_shown) text += "\n  " + describe(file, problem) + why;
-    if (count == most_shown + 1) text += "\n  ...";
+    if (++problems.left_out <= most_shown) text += "\n  " + describe(file, problem) + why;
+    if (problems.left_out == most_shown + 1) text += "\n  ...";
   }
-  if (count == 0) return 0;
+  const std::size_t count = problems.left_out;
+  if (count == 0) return problems;
   text =
       fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
-    say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text,
-                    constraints.crossing == Crossing::error && mendable
-                        ? "--crossing exact takes rings that cross, and rings of too few points; "
-                        : ""));
+    std::string hint;
+    if (constraints.crossing == Crossing::error && (some_cross || some_have_rings)) {
+      hint = fmt::format("--crossing exact {}{}{}; ", some_cross ? "takes rings that cross" : "",
+                         some_cross && some_have_rings ? ", and " : "",
+                         some_have_rings ? "leaves out rings of too few points beside others" : "");
+    }
+    say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text, hint));
   }
-  return count;
+  return problems;
 }
 
 /// The triangles of all polygons, each with its feature, and the rings of those that have some.
@@ -207,13 +222,15 @@ int run(const PolygonsCommand& command) {
   }();
   line.clear();
   RegionResult result = result_of(file, polygons);
-  const std::size_t left_out = handle_problems(command, result, file, polygons, options);
+  const Problems problems = handle_problems(command, result, file, polygons, options);
   write_regions(outputs, command.output, result, line);
 
   std::string summary = fmt::format("features    {}\npolygons    {}\nrings       {}\npoints      {}\ntriangles   {}\n",
                                     file.number_of_features, file.size(), file.ring_offsets.size() - 1,
                                     result.points.size(), result.triangles.size() / 3);
-  if (left_out != 0) summary += fmt::format("no inside   {} polygons\n", left_out);
+  if (problems.mended != 0)
+    summary += fmt::format("mended      {} polygons, whose points come once more\n", problems.mended);
+  if (problems.left_out != 0) summary += fmt::format("no inside   {} polygons\n", problems.left_out);
   if (file.other_geometries != 0) summary += fmt::format("left out    {} points and lines\n", file.other_geometries);
   print_summary(summary, outputs.empty(), command.quiet);
   return exit_done;

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -116,9 +117,8 @@ void warn(const TriangleSwitches& switches, const Work& work, const std::string&
   if (work.mesh.dimension() < 2) {
     say(fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line\n", name));
   } else if (work.result.triangles.empty()) {
-    say(fmt::format(
-        "cadt: warning: {}: no triangles: the segments enclose nothing that no hole reaches; -c keeps the whole hull\n",
-        name));
+    say(fmt::format("cadt: warning: {}: no triangles: the segments enclose nothing that no hole reaches{}\n", name,
+                    switches.hull_segments ? "" : "; -c has the edges of the hull as segments, too"));
   }
   const std::size_t left_out = work.mesh.number_of_points() - work.result.xy.size() / 2;
   if (left_out != 0 && !nodes_written) {
@@ -127,6 +127,15 @@ void warn(const TriangleSwitches& switches, const Work& work, const std::string&
                     "written: leave -j out\n",
                     name, left_out));
   }
+}
+
+/// Who leaves -p out, though there is a .poly file alone, is told.
+void require_nodes(const std::string& path, bool segments) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const fs::path poly = fs::path(path).replace_extension(".poly");
+  if (!segments && !fs::exists(path, code) && fs::exists(poly, code))
+    throw io::FileError(path, 0, fmt::format("there is no such file; -p reads {}", poly.string()));
 }
 
 int run(const TriangleCommand& command, const Request& request) {
@@ -140,6 +149,7 @@ int run(const TriangleCommand& command, const Request& request) {
 
   Work work;
   line.step(fmt::format("reading {}", names.input));
+  require_nodes(names.input, switches.segments);
   read(work, names.input, switches.segments);
   const bool points_in_poly = switches.segments && !work.input.nodes_beside;
   const std::vector<std::string> files = io::triangle_output_files(names.output, switches, points_in_poly);

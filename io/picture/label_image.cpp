@@ -139,7 +139,7 @@ LabelImage read_label_image(const std::string& path) {
       for (std::size_t b = pixel_bytes - bytes_per_channel; alpha && b < pixel_bytes; ++b)
         clear = clear || pixel[b] != 0xff;
       if (clear) {
-        fail("pixel " + std::to_string(x) + ", " + std::to_string(y) +
+        fail("the pixel in column " + std::to_string(x) + ", row " + std::to_string(y) +
              " is transparent; put the image on a background first");
       }
       image.labels.push_back(label);

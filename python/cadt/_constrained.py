@@ -52,7 +52,8 @@ class ConstrainedDelaunay(Mesh):
     holes : array_like, shape (h, 2), optional
         With ``domain="seeds"``: places from which holes spread to the next segment, as they do from the outside.
     regions : array_like, shape (r, 3), optional
-        With ``domain="seeds"``: x, y and the attribute of the region there (`region_attribute`).
+        With ``domain="seeds"``: x, y and the attribute of the region there (`region_attribute`); of several in one region
+        the first one counts. Holes and regions that are beyond the hull are left out.
     backend, device, threads, max_memory, statistics, progress
         As for `Delaunay`.
 
@@ -360,8 +361,13 @@ class ConstrainedDelaunay(Mesh):
         return made
 
     def _complete(self, values: Any) -> Any:
-        of_given = self._given != self.n_points and np.shape(values)[:1] == (self._given,)
-        return self.at_crossings(values) if of_given else values
+        if self._given == self.n_points:
+            return values
+        shape = np.shape(values)
+        if shape[:1] not in ((self._given,), (self.n_points,)):
+            rows = f"{self._given} rows, one a point that was given, or {self.n_points}, with those of added_points"
+            raise InputError(f"values must have {rows}, not the shape {shape}", 0)
+        return self.at_crossings(values) if shape[0] == self._given else values
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:

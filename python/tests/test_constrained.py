@@ -140,7 +140,7 @@ def test_values_at_crossings() -> None:
     assert mesh.interpolate(own, [[2, 0]]).tolist() == [7]
     assert mesh.rasterize(z, bounds=(1.5, -0.5, 2.5, 0.5), shape=(1, 1)).item() == 2
     for wrong in (z[:-1], np.zeros(9)):
-        with pytest.raises(cadt.InputError):
+        with pytest.raises(cadt.InputError, match="8 rows, one a point that was given, or 10, with those of added_points"):
             mesh.interpolate(wrong, [[2, 0]])
 
 

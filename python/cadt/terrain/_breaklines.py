@@ -35,6 +35,7 @@ class Breaklines:
     xyz: NDArray[np.float64]
     offsets: NDArray[np.int64]
     feature: NDArray[np.int64]
+    other_crs: str = ""  # the file's own reference system, if --crs is another one
 
 
 def check_file(options: argparse.Namespace) -> None:
@@ -52,7 +53,7 @@ def inputs_of(options: argparse.Namespace) -> list[str]:
     return [*options.inputs, *([options.breaklines] if options.breaklines is not None else [])]
 
 
-def read_breaklines(path: str, cloud: Cloud, asked: str | None, line: ProgressLine) -> Breaklines:
+def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
     ogr = _pyogrio(f"reading {path}")
     layer = only_layer(ogr, path, "lines")
@@ -64,8 +65,6 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None, line: ProgressLi
         raise truncated(path, len(geometry), layer.count)
     crs = parse_crs(path, layer.crs)
     if not same_crs(crs, cloud.crs):
-        if asked is not None and crs is not None:
-            line.warn(f"{path}: its reference system is {name_of(crs)}; it is taken for {name_of(cloud.crs)}, as --crs says")
         if asked is None:
             raise CrsError(
                 path,
@@ -85,7 +84,8 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None, line: ProgressLi
         raise FileError(path, f"feature {feature[first]} (counted from 0) has no finite coordinates")
     if suffix_of(path) == "geojson" and (xyz[:, 2] == 0).any():
         xyz[_without_height(path, given, len(xyz)), 2] = np.nan
-    return Breaklines(path, xyz, offsets, feature)
+    other_crs = name_of(crs) if crs is not None and not same_crs(crs, cloud.crs) else ""
+    return Breaklines(path, xyz, offsets, feature, other_crs)
 
 
 def _without_height(path: str, features: NDArray[np.integer], count: int) -> NDArray[np.bool_]:
@@ -148,7 +148,10 @@ def terrain_of(cloud: Cloud, options: argparse.Namespace, line: ProgressLine) ->
     name = ", ".join(cloud.sources)
     if options.breaklines is None:
         return Terrain(triangulate(cloud.xy, name, options, line), cloud.z, {})
-    lines = leave_out_far(read_breaklines(options.breaklines, cloud, options.crs, line), cloud, line)
+    lines = read_breaklines(options.breaklines, cloud, options.crs)
+    if lines.other_crs:
+        line.warn(f"{lines.path}: its reference system is {lines.other_crs}; it is taken for {name_of(cloud.crs)}, as --crs says")
+    lines = leave_out_far(lines, cloud, line)
     terrain = add_breaklines(cloud, lines, options, line)
     if terrain.mesh.n_triangles == 0:
         raise no_triangles(name, len(cloud))

@@ -265,6 +265,8 @@ def parse(command: str, words: Sequence[str]) -> argparse.Namespace:
     for word in itertools.takewhile(lambda word: word != "--", words):  # before what is missing
         name = word.split("=")[0]
         if name.startswith("--") and name not in known:
+            if command == "raster" and name in ("--segments", "--crossing"):
+                raise UsageError(f"{name} is for .asc, .npy and .png; with a GeoTIFF lines are read by --breaklines")
             parser.error(f"cadt {command} has no option {name}{suggestion(name, known)}")
     options = parser.parse_intermixed_args(words)
     files = list(options.files)

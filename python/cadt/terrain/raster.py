@@ -17,7 +17,7 @@ import cadt
 
 from ._breaklines import check_file, inputs_of, terrain_of
 from ._buckets import Buckets, Floats
-from ._files import check_output, check_utf8
+from ._files import check_output, check_utf8, suffix_of
 from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
 from ._progress import ProgressLine
 from ._tiles import TiledRaster
@@ -90,6 +90,8 @@ def check_options(options: argparse.Namespace) -> None:
     check_max_edge(options.max_edge)
     check_nodata(options.nodata, options.dtype)
     parse_bounds(options.bounds)
+    if options.breaklines is not None and suffix_of(options.output) in ("asc", "npy", "png"):
+        raise UsageError(f"{options.output}: with --breaklines a GeoTIFF is written, .tif; .asc, .npy and .png take --segments")
     if options.breaklines is not None and options.method != "linear":
         raise UsageError(f"--breaklines: --method {options.method} takes no notice of lines; leave it out")
     if options.breaklines is not None and options.scratch is not None:

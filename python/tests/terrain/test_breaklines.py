@@ -134,6 +134,14 @@ def test_an_option_that_is_given_twice_is_refused(las, tmp_path, cadt_terrain, c
         assert f"error: {words[2].split('=')[0]} is given twice; see: cadt {command} --help" in result.err
 
 
+def test_what_takes_segments_instead_is_told(las, tmp_path, cadt_terrain):
+    las("scan.laz", scattered())
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 1 0\nl 1 2\n")
+    name = write(tmp_path / "banks.gpkg", [bank(40)])
+    cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--segments", "a.obj", code=2, says="lines are read by --breaklines")
+    cadt_terrain("raster", "scan.laz", "dem.asc", "--res", "1", "--breaklines", name, code=2, says=".png take --segments")
+
+
 def test_several_heights_at_a_place(las, tmp_path, cadt_terrain):
     """Two lakes that share the corners (60, 20) and (60, 40), and the cells between these, in either order."""
     las("scan.laz", np.array([[*AT, 0], *([x, y, 0] for x, y in AT + [[100, 0], [0, 100], [100, 100]])]))

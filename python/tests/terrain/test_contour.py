@@ -112,6 +112,14 @@ def test_interval_base_and_long_edges():
         terrain.contour_lines(mesh, z, 1e-12)
 
 
+def test_a_height_for_each_point():
+    points = hills(100, at=(0, 0))
+    mesh = cadt.Delaunay(points[:, :2])
+    for z in (points[:-1, 2], points, np.where(np.arange(len(points)) == 7, np.nan, points[:, 2])):
+        with pytest.raises(ValueError, match=f"a finite height for each of the mesh's {len(points)} points"):
+            terrain.contour_lines(mesh, z, 2.5)
+
+
 def test_chains():
     """Open ones and circles, of all lengths, against a walk."""
     random = np.random.default_rng(4)

@@ -79,6 +79,7 @@ class Polygons(CliTest):
         points, triangles = self.off("m.off")
         self.assertEqual(area_of(points, triangles) / 2, 16 + 8)
         self.assertEqual(points[12:], [(2, 2)])
+        self.assertIn("mended      1 polygons", self.cadt("polygons", "a.geojson", "--crossing", "exact").out)
         flat = [[0, 0], [1, 1], [2, 2], [0, 0]]
         self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
         err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
@@ -88,7 +89,12 @@ class Polygons(CliTest):
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8 + 16)
         err = self.cadt("polygons", "b.geojson", "-o", "m.off").err
         self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
+        self.assertIn("--crossing exact takes rings that cross, and leaves out rings of too few points beside others; ", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16)
+
+    def test_files_of_gdal_can_be_converted(self):
+        for suffix in ("shp", "gpkg"):
+            self.fails(2, "polygons", "a." + suffix, says=f"one of: geojson json; ogr2ogr OUT.geojson a.{suffix} makes one of them")
 
     def test_a_grid_moves_those_that_cross_alone(self):
         dot = [[1, 1]]
@@ -125,7 +131,7 @@ class Polygons(CliTest):
         err = self.cadt("polygons", "a.geojson", "--crossing", "exact", "-o", "m.off").err
         self.assertIn("2 of 5 polygons have no inside", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 3 * 16)
-        self.assertIn("--crossing exact", self.cadt("polygons", "a.geojson").err)
+        self.assertIn("; --crossing exact leaves out rings", self.cadt("polygons", "a.geojson").err)
         for name, text in (("b.json", "[]"), ("c.json", json.dumps(polygon(SQUARE, SQUARE)))):  # which that does not help
             self.write(name, text)
             err = self.cadt("polygons", name, "-o", "m.off").err

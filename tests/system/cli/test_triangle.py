@@ -161,6 +161,9 @@ class TriangleSegments(CliTest):
         err = self.cadt("triangle", "-p", "box").err
         self.assertIn("no triangles: the segments enclose nothing", err)
         self.assertEqual(rows(self.path("box.1.ele")), [])
+        self.assertIn("-c has the edges of the hull as segments, too", err)
+        self.write("eaten.poly", "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n1 0\n1 1 2\n1\n1 2 2\n")
+        self.assertNotIn("; -c", self.cadt("triangle", "-pc", "eaten").err)
         self.cadt("triangle", "-pcO", "box")
         self.assertEqual(len(rows(self.path("box.1.ele"))), 10)
 
@@ -203,6 +206,7 @@ class TriangleSegments(CliTest):
         self.fails(3, "triangle", "-p", "bad", says="bad.poly:15: index 9 is out of range")
         self.fails(3, "triangle", "-p", "absent", says="absent.poly: ")
         self.fails(8, "triangle", "-A", "box", says="-A is about regions")
+        self.fails(3, "triangle", "box", says="box.node: there is no such file; -p reads box.poly")
         self.assertEqual(self.names(), ["bad.poly", "box.poly"])
 
 

@@ -94,8 +94,8 @@ TEST(LabelFiles, ThatAreNoneSayWhy) {
   damaged[20] = 1;  // of the width
   expect(damaged, "is malformed: ");
   expect(png_of(2, 1, {16, PNG_COLOR_TYPE_RGB}, Bytes(12, 1)), "has colours of 16 bits");
-  expect(png_of(2, 1, {8, PNG_COLOR_TYPE_RGB_ALPHA}, {1, 2, 3, 255, 4, 5, 6, 254}), "pixel 1, 0 is transparent");
-  expect(png_of(1, 1, {16, PNG_COLOR_TYPE_GRAY_ALPHA}, {1, 7, 255, 254}), "pixel 0, 0 is transparent");
+  expect(png_of(2, 1, {8, PNG_COLOR_TYPE_RGB_ALPHA}, {1, 2, 3, 255, 4, 5, 6, 254}), "column 1, row 0 is transparent");
+  expect(png_of(1, 1, {16, PNG_COLOR_TYPE_GRAY_ALPHA}, {1, 7, 255, 254}), "column 0, row 0 is transparent");
   expect_file_error([&] { static_cast<void>(read_label_image(folder / "absent.png")); }, folder / "absent.png", 0, "");
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -169,6 +170,34 @@ void note_no_heights(const std::string& name, bool some) {
 void note_holes(const Graph& graph, const SegmentOptions& options) {
   if (graph.holes.empty() || options.domain == "seeds") return;
   say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
+}
+
+void note_far_seeds(std::span<const double> xy, const Triangulation& mesh, std::span<const std::array<double, 2>> holes,
+                    std::span<const Region> regions, const std::string& name) {
+  const auto hull = mesh.hull();
+  const auto is_far = [&](double x, double y) {
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const double* a = &xy[2 * static_cast<std::size_t>(hull[i])];
+      const double* b = &xy[2 * static_cast<std::size_t>(hull[(i + 1) % hull.size()])];
+      const double left = (b[0] - a[0]) * (y - a[1]), right = (b[1] - a[1]) * (x - a[0]);
+      if (left - right < -1e-9 * (std::abs(left) + std::abs(right))) return true;
+    }
+    return false;
+  };
+  const auto note = [&](const char* what, std::size_t count, const std::array<double, 2>& first) {
+    if (count == 0) return;
+    say(fmt::format(
+        "cadt: warning: {}: {} of its {} beyond the hull of the points, and without effect; the first is at {} {}\n",
+        name, count, what, first[0], first[1]));
+  };
+  std::size_t far_holes = 0, far_regions = 0;
+  std::array<double, 2> first_hole{}, first_region{};
+  for (const auto& at : holes)
+    if (is_far(at[0], at[1]) && far_holes++ == 0) first_hole = at;
+  for (const Region& region : regions)
+    if (is_far(region.x, region.y) && far_regions++ == 0) first_region = {region.x, region.y};
+  note(far_holes == 1 ? "holes is" : "holes are", far_holes, first_hole);
+  note(far_regions == 1 ? "regions is" : "regions are", far_regions, first_region);
 }
 
 void note_other_heights(const io::PointSet& points, std::size_t own_points, const Triangulation& mesh,

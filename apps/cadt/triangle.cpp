@@ -114,6 +114,10 @@ void warn(const TriangleSwitches& switches, const Work& work, const std::string&
   for (const char letter : switches.without_effect) {
     say(fmt::format("cadt: -{} has no effect: it {}\n", letter, why_without_effect(letter)));
   }
+  if (switches.segments) {
+    const auto holes = switches.ignore_holes ? std::span<const std::array<double, 2>>() : work.segments().holes;
+    note_far_seeds(work.input.xy, work.mesh, holes, work.segments().regions, name);
+  }
   if (work.mesh.dimension() < 2) {
     say(fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line\n", name));
   } else if (work.result.triangles.empty()) {

@@ -21,10 +21,9 @@ class GrowingPolygon {
     queued_.assign(mesh_.triangles.size(), 0);
   }
 
-  std::optional<ChainMesh> triangulate(const StopCheck& check_stop) {
+  std::optional<ChainMesh> triangulate() {
     if (!take_out()) return std::nullopt;
     for (; !out_.empty(); out_.pop_back()) {
-      if (out_.size() % vertices_a_check == 0) check_stop();
       if (!insert(out_.back())) return std::nullopt;
       legalize();
     }
@@ -32,8 +31,6 @@ class GrowingPolygon {
   }
 
  private:
-  static constexpr std::size_t vertices_a_check = 1024;
-
   /// A vertex that is not in the polygon, and those that were on its sides.
   struct Out {
     std::int32_t before, vertex, after;
@@ -160,9 +157,8 @@ class GrowingPolygon {
 
 }  // namespace
 
-std::optional<ChainMesh> insert_at_random(const exact::ImplicitPoints& exact, std::span<const Place> chain,
-                                          const StopCheck& check_stop) {
-  return GrowingPolygon(exact, chain).triangulate(check_stop);
+std::optional<ChainMesh> insert_at_random(const exact::ImplicitPoints& exact, std::span<const Place> chain) {
+  return GrowingPolygon(exact, chain).triangulate();
 }
 
 }  // namespace cadt::constraints

@@ -181,6 +181,19 @@ class Segments(CliTest):
         self.cadt("triangulate", "p.xy", "--stats=s.json", "-o", "m.off")
         self.assertIsNone(json.loads(self.path("s.json").read_text())["constraints"])
 
+    def test_seeds_beyond_the_hull_are_named(self):
+        square = "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n"
+        self.write("far.poly", square + "2\n1 4 5\n2 9 9\n3\n1 4 4 7 0\n2 2 -1 8 0\n3 1 1 9 0\n")
+        self.write("near.poly", square + "1\n1 4 2\n1\n1 2 2 7 0\n")
+        for words in (["triangulate", "--domain", "seeds"], ["triangle", "-pA"]):
+            err = self.cadt(*words, "far.poly").err
+            self.assertIn("warning: far.poly: 2 of its holes are beyond the hull of the points, and without effect; the first is at 4 5\n", err)
+            self.assertIn("warning: far.poly: 1 of its regions is beyond the hull of the points, and without effect; the first is at 2 -1\n", err)
+            self.assertNotIn("beyond", self.cadt(*words, "near.poly").err)
+        for words in (["triangulate"], ["triangulate", "--domain", "seeds", "-q"], ["triangle", "-pQ"]):
+            self.assertNotIn("beyond", self.cadt(*words, "far.poly").err)
+        self.assertNotIn("holes", self.cadt("triangle", "-pO", "far").err)
+
     def test_notes_and_empty_meshes(self):
         self.assertIn("--domain seeds uses them", self.cadt("triangulate", "plate.poly").err)
         self.assertEqual(self.cadt("triangulate", "plate.poly", "-q").err, "")

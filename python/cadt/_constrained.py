@@ -313,7 +313,38 @@ class ConstrainedDelaunay(Mesh):
         """
         return _show.plot_constrained(self, ax, inside, how)
 
+    def to_matplotlib(self) -> Any:
+        """A ``matplotlib.tri.Triangulation`` of all triangles, whose mask hides those outside. Raises InputError without
+        triangles."""
+        return _show.to_matplotlib(self)
+
+    def to_pyvista(self, z: Any = None, *, inside: bool = True) -> Any:
+        """A ``pyvista.PolyData`` of the triangles inside, or with ``inside=False`` of all; `z`: heights of the points, else
+        0. ``cell_data`` has the region of each."""
+        return _show.to_pyvista(self, z, inside)
+
+    def to_meshio(self, z: Any = None, *, inside: bool = True) -> Any:
+        """A ``meshio.Mesh`` of the triangles inside, or with ``inside=False`` of all; `z`: heights of the points, else the
+        mesh is plane. ``cell_data`` has the region of each, and takes more: labels of an image are
+        ``[cadt.triangle_labels(mesh.points, mesh.triangles_inside, image)]``."""
+        return _show.to_meshio(self, z, inside)
+
+    def save(self, path: Any, z: Any = None, *, inside: bool = True) -> None:
+        """As `Delaunay.save`: the triangles inside, or with ``inside=False`` all, with the region of each. Archives of
+        NumPy have neighbors and convex_hull if no triangle is left out."""
+        _show.save(self, path, z, inside)
+
     # Plumbing
+
+    def _cells(self, inside: bool) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        host = self._on_host
+        if not inside:
+            return host.mesh.triangles, {"region": host.region}
+        return host.triangles_inside(), {"region": host.region[host.inside.view(bool)]}
+
+    def _outside(self) -> np.ndarray | None:
+        outside = ~self._on_host.inside.view(bool)
+        return outside if outside.any() else None
 
     def _of(self, name: str, of: Callable, of_gpu: Callable | None = None) -> Any:
         if name not in self._cache:

@@ -137,7 +137,7 @@ class Mesh(Queries):
 
     def save(self, path: Any, z: Any = None) -> None:
         """Writes ``.npz`` (points, simplices, neighbors, convex_hull, and `z` as height), or with meshio what the suffix says
-        (``.ply .vtk .obj .stl``): all triangles, without segments and domains.
+        (``.ply .vtk .obj .stl``).
 
         The file appears whole or not at all, and behind a symbolic link, if `path` is one.
 
@@ -151,6 +151,14 @@ class Mesh(Queries):
         _show.save(self, path, z)
 
     # Plumbing
+
+    def _cells(self, inside: bool) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """The triangles for other programs, on the host, and what is said of each."""
+        return self._host_mesh.triangles, {}
+
+    def _outside(self) -> np.ndarray | None:
+        """Whether each triangle is outside; None: all are inside."""
+        return None
 
     @property
     def _any(self) -> Any:

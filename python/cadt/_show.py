@@ -49,8 +49,11 @@ def to_matplotlib(mesh: Mesh) -> Any:
     xy = mesh._host_points
     if mesh.n_triangles == 0:
         raise InputError("the mesh has no triangles, without which matplotlib makes no Triangulation", 0)
-    result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
+    mask = mesh._outside()
+    result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles, mask)
     result.is_delaunay = True
+    if mask is not None:
+        return result  # with neighbours of its own
     # Its own object in C++ must be made first: with neighbours it takes none (matplotlib 3.11).
     result.get_cpp_triangulation()
     # matplotlib's neighbour k is across the edge from vertex k to the next, ours is opposite vertex k.
@@ -85,19 +88,24 @@ def plot_constrained(mesh: ConstrainedDelaunay, ax: Any, inside: bool, how: dict
     return ax
 
 
-def to_pyvista(mesh: Mesh, z: Any) -> Any:
+def to_pyvista(mesh: Mesh, z: Any, inside: bool = False) -> Any:
     pyvista = _need("pyvista", "pyvista")
-    faces = np.insert(mesh._host_mesh.triangles, 0, 3, axis=1)
-    return pyvista.PolyData(_in_space(mesh, z), faces.ravel())
+    triangles, attributes = mesh._cells(inside)
+    result = pyvista.PolyData(_in_space(mesh, z), np.insert(triangles, 0, 3, axis=1).ravel())
+    for name, values in attributes.items():
+        result.cell_data[name] = values
+    return result
 
 
-def to_meshio(mesh: Mesh, z: Any) -> Any:
+def to_meshio(mesh: Mesh, z: Any, inside: bool = False) -> Any:
     meshio = _need("meshio", "meshio")
     xyz = _in_space(mesh, z)
-    return meshio.Mesh(xyz if z is not None else xyz[:, :2], [("triangle", mesh._host_mesh.triangles)])
+    triangles, attributes = mesh._cells(inside)
+    of_cells = {name: [values] for name, values in attributes.items()}
+    return meshio.Mesh(xyz if z is not None else xyz[:, :2], [("triangle", triangles)], cell_data=of_cells)
 
 
-def save(mesh: Mesh, path: Any, z: Any) -> None:
+def save(mesh: Mesh, path: Any, z: Any, inside: bool = False) -> None:
     path = Path(path)
     suffix = path.suffix.lower()
     if not suffix:
@@ -119,16 +127,19 @@ def save(mesh: Mesh, path: Any, z: Any) -> None:
     os.close(handle)
     try:
         if suffix == ".npz":
-            host = mesh._host_mesh
             # As the program's, whose readers take it.
-            arrays = {"points": mesh._host_points, "simplices": host.triangles, "neighbors": host.neighbors}
-            arrays["convex_hull"] = np.stack([host.hull, np.roll(host.hull, -1)], axis=1)
+            host = mesh._host_mesh
+            triangles, attributes = mesh._cells(inside)
+            arrays = {"points": mesh._host_points, "simplices": triangles, **attributes}
+            if len(triangles) == len(host.triangles):
+                arrays["neighbors"] = host.neighbors
+                arrays["convex_hull"] = np.stack([host.hull, np.roll(host.hull, -1)], axis=1)
             if heights is not None:
                 arrays["height"] = heights
             np.savez(name, **arrays)  # type: ignore[arg-type]
         else:
             # A plane mesh gets a third coordinate: most formats have no other.
-            to_meshio(mesh, np.zeros(mesh.n_points) if heights is None else heights).write(name)
+            to_meshio(mesh, np.zeros(mesh.n_points) if heights is None else heights, inside).write(name)
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)

@@ -337,5 +337,6 @@ def test_plot(tmp_path: Path) -> None:
     ax = mesh.plot(plt.figure().add_subplot())
     segments = [c for c in ax.collections if hasattr(c, "get_segments")]
     assert sum(len(c.get_segments()) for c in segments) == 8
-    mesh.save(tmp_path / "mesh.npz")
-    assert np.load(tmp_path / "mesh.npz")["simplices"].shape == (10, 3)
+    mask = mesh.to_matplotlib().mask
+    assert mask.tolist() == (~mesh.inside).tolist()
+    assert cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8]).to_matplotlib().mask is None

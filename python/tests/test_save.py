@@ -69,6 +69,31 @@ def test_meshio(tmp_path: Path) -> None:
         mesh.to_meshio([1, 2, 3])
 
 
+def test_what_is_inside_is_written_with_its_region(tmp_path: Path) -> None:
+    ring = [[0, 0], [6, 0], [6, 4], [0, 4], [1, 1], [2, 1], [2, 2], [1, 2], [3, 1], [4, 1], [4, 2], [3, 2]]
+    mesh = cadt.ConstrainedDelaunay(ring, rings=[0, 4, 8, 12], domain="seeds", holes=[[1.5, 1.5]])
+    assert len(set(mesh.region[mesh.inside].tolist())) == 2
+    for inside in (True, False):
+        mesh.save(tmp_path / "mesh.npz", inside=inside)
+        kept = mesh.inside | (not inside)
+        with np.load(tmp_path / "mesh.npz") as f:
+            assert np.array_equal(f["simplices"], mesh.simplices[kept]) and np.array_equal(f["region"], mesh.region[kept])
+            assert ("neighbors" in f) == ("convex_hull" in f) == (not inside)
+    meshio = pytest.importorskip("meshio")
+    mesh.save(tmp_path / "mesh.vtu")
+    read = meshio.read(tmp_path / "mesh.vtu")
+    assert np.array_equal(read.cells[0].data, mesh.triangles_inside)
+    assert np.array_equal(read.cell_data["region"][0], mesh.region[mesh.inside])
+    assert len(mesh.to_meshio(inside=False).cells[0].data) == mesh.n_triangles
+
+
+def test_pyvista_has_the_regions() -> None:
+    pytest.importorskip("pyvista")
+    mesh = cadt.ConstrainedDelaunay([[0, 0], [4, 0], [4, 4], [0, 4]], rings=[0, 4])
+    made = mesh.to_pyvista()
+    assert made.n_cells == 2 and np.array_equal(made.cell_data["region"], mesh.region)
+
+
 def test_heights_of_crossings_are_written(tmp_path: Path) -> None:
     cross = [[0, 0], [2, 2], [0, 2], [2, 0]]
     mesh = cadt.ConstrainedDelaunay(cross, [[0, 1], [2, 3]], crossing="exact")

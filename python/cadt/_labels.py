@@ -41,6 +41,10 @@ def label_segments(labels: Any) -> LabelSegments:
     labels : array_like of int, shape (rows, columns)
         Row 0 is the top. They must fit in 32 bits; -2**31 is none.
 
+    Notes
+    -----
+    Boundaries have the steps of the pixels; docs/constrained.md shows how to simplify them first.
+
     Examples
     --------
     >>> labels = [[1, 1, 2], [1, 1, 2]]

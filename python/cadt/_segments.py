@@ -122,10 +122,12 @@ def _as_places(a: np.ndarray, what: str, columns: int) -> np.ndarray:
     raise InputError(f"{what} must be numbers of shape (k, {columns}), not {a.dtype} of {a.shape}", 0)
 
 
-def find_crossings(points: Any, segments: Any, *, threads: int | None = None) -> np.ndarray:
+def find_crossings(
+    points: Any, segments: Any = None, *, polylines: Any = None, rings: Any = None, threads: int | None = None
+) -> np.ndarray:
     """All pairs of segments that cross: (p, 2) int32, the lower index first, ascending. Exact.
 
-    Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected, on the
+    Segments, polylines and rings are given and numbered as those of `ConstrainedDelaunay`. Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected, on the
     host, in 100 to 200 bytes a pair. The GIL is released; Ctrl-C ends it.
 
     Raises
@@ -139,4 +141,5 @@ def find_crossings(points: Any, segments: Any, *, threads: int | None = None) ->
     array([[0, 1]], dtype=int32)
     """
     most = _devices.whole(threads, "threads", 31)
-    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), most)
+    xy = as_points(points)
+    return _cadt.find_crossings(xy, segments_of(segments, polylines, rings, len(xy)), most)

@@ -102,6 +102,9 @@ def test_lines_and_rings_with_vertices() -> None:
 def test_crossings() -> None:
     segments = [[0, 1], [2, 3], [0, 2]]
     assert cadt.find_crossings(CROSS, segments).tolist() == [[0, 1]]
+    assert cadt.find_crossings(CROSS, polylines=[0, 2, 4]).tolist() == [[0, 1]]
+    bow_tie = [[0, 0], [2, 2], [2, 0], [0, 2]]
+    assert cadt.find_crossings(bow_tie, [[0, 3]], rings=[0, 4]).tolist() == [[1, 3]]
     with pytest.raises(cadt.CrossingError) as caught:
         cadt.ConstrainedDelaunay(CROSS, segments)
     error = pickle.loads(pickle.dumps(caught.value))

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import struct
+import textwrap
+from pathlib import Path
 from typing import Any
 
 import cadt
@@ -246,6 +248,23 @@ def test_plot() -> None:
     bad = cadt.polygons([wkb([SQUARE]), wkb([[[0, 0], [1e9, np.nan], [np.inf, 1]]])])
     ax = bad.plot(plt.figure().add_subplot())
     assert len(bad.problems) == 1 and ax.get_xlim()[1] < 4 and ax.get_ylim()[1] < 4
+
+
+def test_simplified_boundaries_as_documented() -> None:
+    """The lines of docs/constrained.md."""
+    shapely = pytest.importorskip("shapely")
+    text = (Path(__file__).parents[2] / "docs" / "constrained.md").read_text(encoding="utf-8")
+    code = text.split("    b = cadt.label_segments(labels)\n")[1].split("\n\n")[0]
+    random = np.random.default_rng(3)
+    seeds, y, x = random.random((40, 2)) * [200, 150], *np.mgrid[:150, :200]
+    nearest = np.argmin((x[..., None] - seeds[:, 0]) ** 2 + (y[..., None] - seeds[:, 1]) ** 2, axis=2)
+    labels = random.integers(1, 9, 40)[nearest]
+    names: dict[str, Any] = {"cadt": cadt, "np": np, "shapely": shapely, "labels": labels}
+    exec("b = cadt.label_segments(labels)\n" + textwrap.dedent(code), names)  # noqa: S102
+    mesh, label = names["mesh"], names["label"]
+    assert len(mesh.segments) < len(names["b"].segments) / 5
+    wrong = label[mesh.find_simplex((x + 0.5, 149.5 - y))] != labels
+    assert np.count_nonzero(wrong) < 0.02 * labels.size  # those that the boundaries have moved over
 
 
 def test_labels() -> None:

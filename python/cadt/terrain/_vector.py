@@ -143,6 +143,9 @@ def only_layer(ogr: Any, path: str, what: str) -> Layer:
             if true_count != count:
                 count, where = true_count, "1 = 1"
     except errors_of(ogr) as error:
+        if "SHAPE_RESTORE_SHX" in str(error):
+            said = "the .shx file beside it is missing, a part of the Shapefile; get it, or make it again with the environment SHAPE_RESTORE_SHX=YES"
+            raise FileError(path, said) from error
         raise FileError(path, f"cannot be read: {why(error)}") from error
     if count < 0:
         raise FileError(path, f"damaged: it promises {count} features")

@@ -201,6 +201,13 @@ def test_breaklines(tmp_path):
     assert len(read_breaklines(str(path), cloud, None).offsets) == 20
 
 
+def test_a_shapefile_without_its_index(tmp_path):
+    path = pathlib.Path(lines(tmp_path / "l.shp", 20))
+    path.with_suffix(".shx").unlink()
+    with pytest.raises(terrain.FileError, match=r"l\.shp: the \.shx file beside it is missing"):
+        read_breaklines(str(path), terrain.read_cloud([str(points(tmp_path / "p.fgb", 9))]), None)
+
+
 def test_styles_of_qgis_are_no_layer(tmp_path):
     pandas = pytest.importorskip("pandas", reason="pandas is not installed: scripts/python_env terrain")
     import pyogrio

@@ -14,7 +14,7 @@ from cadt._errors import FileError, InputError
 from cadt._points import as_values
 
 if TYPE_CHECKING:
-    from cadt._constrained import ConstrainedDelaunay
+    from cadt._domains import DomainMesh
     from cadt._mesh import Mesh
 
 
@@ -72,7 +72,7 @@ def plot(mesh: Mesh, ax: Any, how: dict[str, Any]) -> Any:
     return ax
 
 
-def plot_constrained(mesh: ConstrainedDelaunay, ax: Any, inside: bool, how: dict[str, Any]) -> Any:
+def plot_constrained(mesh: DomainMesh, ax: Any, inside: bool, how: dict[str, Any]) -> Any:
     if ax is None:
         ax = _need("matplotlib.pyplot", "matplotlib").gca()
     collections = _need("matplotlib.collections", "matplotlib")

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -172,32 +172,33 @@ void note_holes(const Graph& graph, const SegmentOptions& options) {
   say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
 }
 
-void note_far_seeds(std::span<const double> xy, const Triangulation& mesh, std::span<const std::array<double, 2>> holes,
-                    std::span<const Region> regions, const std::string& name) {
-  const auto hull = mesh.hull();
-  const auto is_far = [&](double x, double y) {
-    for (std::size_t i = 0; i < hull.size(); ++i) {
-      const double* a = &xy[2 * static_cast<std::size_t>(hull[i])];
-      const double* b = &xy[2 * static_cast<std::size_t>(hull[(i + 1) % hull.size()])];
-      const double left = (b[0] - a[0]) * (y - a[1]), right = (b[1] - a[1]) * (x - a[0]);
-      if (left - right < -1e-9 * (std::abs(left) + std::abs(right))) return true;
+void note_far_seeds(PointsView points, const ConstrainedTriangulation& mesh,
+                    std::span<const std::array<double, 2>> holes, std::span<const Region> regions,
+                    const std::string& name) {
+  if (const auto moved = mesh.moved_points(); !moved.empty()) points = PointsView(moved);
+  constexpr double most = std::numeric_limits<double>::max();
+  std::array<double, 2> low = {most, most}, high = {-most, -most};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    low = {std::min(low[0], points.x(i)), std::min(low[1], points.y(i))};
+    high = {std::max(high[0], points.x(i)), std::max(high[1], points.y(i))};
+  }
+  const auto note = [&](const char* what, std::size_t count, const auto& place) {
+    std::size_t far = 0, first = 0;
+    for (std::size_t i = count; i-- > 0;) {
+      const auto [x, y] = place(i);
+      if (x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1]) continue;
+      ++far;
+      first = i;
     }
-    return false;
-  };
-  const auto note = [&](const char* what, std::size_t count, const std::array<double, 2>& first) {
-    if (count == 0) return;
+    if (far == 0) return;
+    const auto [x, y] = place(first);
     say(fmt::format(
-        "cadt: warning: {}: {} of its {} beyond the hull of the points, and without effect; the first is at {} {}\n",
-        name, count, what, first[0], first[1]));
+        "cadt: warning: {}: {} of its {} {} outside of the points' extent, and without effect; the first is at "
+        "{} {}\n",
+        name, far, what, far == 1 ? "is" : "are", x, y));
   };
-  std::size_t far_holes = 0, far_regions = 0;
-  std::array<double, 2> first_hole{}, first_region{};
-  for (const auto& at : holes)
-    if (is_far(at[0], at[1]) && far_holes++ == 0) first_hole = at;
-  for (const Region& region : regions)
-    if (is_far(region.x, region.y) && far_regions++ == 0) first_region = {region.x, region.y};
-  note(far_holes == 1 ? "holes is" : "holes are", far_holes, first_hole);
-  note(far_regions == 1 ? "regions is" : "regions are", far_regions, first_region);
+  note("holes", holes.size(), [&](std::size_t i) { return holes[i]; });
+  note("regions", regions.size(), [&](std::size_t i) { return std::array{regions[i].x, regions[i].y}; });
 }
 
 void note_other_heights(const io::PointSet& points, std::size_t own_points, const Triangulation& mesh,

@@ -51,9 +51,11 @@ void note_no_heights(const std::string& name, bool some);
 /// A note if the file has holes that --domain leaves out of account.
 void note_holes(const Graph& graph, const SegmentOptions& options);
 
-/// A warning if holes or regions are beyond the hull, where they do nothing: most often they are misplaced.
-void note_far_seeds(std::span<const double> xy, const Triangulation& mesh, std::span<const std::array<double, 2>> holes,
-                    std::span<const Region> regions, const std::string& name);
+/// A warning if holes or regions are outside of the points' extent, where they do nothing: most often they are
+/// misplaced.
+void note_far_seeds(PointsView points, const ConstrainedTriangulation& mesh,
+                    std::span<const std::array<double, 2>> holes, std::span<const Region> regions,
+                    const std::string& name);
 
 /// A note if points of --segments, those from `own_points` on, have other heights than those of the input at the same
 /// places, which count.

@@ -106,7 +106,7 @@ void require_format(const std::string& path, const std::string& asked, const std
       exit_usage,
       fmt::format("{}: {}; {} one of: {}{}", path, suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'",
                   option.empty() ? "it has to be" : "name the format with " + option + ",", join(known, " "),
-                  of_gdal && geojson ? "; ogr2ogr OUT.geojson " + path + " makes one of them" : ""));
+                  of_gdal && geojson ? "; ogr2ogr OUT.geojson '" + path + "' makes one of them" : ""));
 }
 
 void require_columns(const std::string& columns, const std::string& option) {

@@ -15,8 +15,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace cadt::cli {
 namespace {
@@ -56,12 +58,17 @@ bool crosses(PolygonStatus status) {
 /// Whether the polygon can have an inside if its rings may cross; then rings of one or two points bound nothing.
 bool may_have_inside(PolygonStatus status) { return crosses(status) || status == PolygonStatus::too_few_points; }
 
-/// Whether a ring has three points, though others have fewer.
+/// Whether a ring has three different points, though others have fewer.
 bool has_ring(const io::PolygonsFile& file, std::int64_t polygon) {
   const auto p = static_cast<std::size_t>(polygon);
-  const auto begin = file.ring_offsets.begin() + file.polygon_offsets[p];
-  const auto end = file.ring_offsets.begin() + file.polygon_offsets[p + 1] + 1;
-  return std::adjacent_find(begin, end, [](auto first, auto next) { return next - first >= 3; }) != end;
+  for (std::int64_t ring = file.polygon_offsets[p]; ring < file.polygon_offsets[p + 1]; ++ring) {
+    std::set<std::array<double, 2>> different;
+    for (std::int64_t i = file.ring_offsets[static_cast<std::size_t>(ring)];
+         i < file.ring_offsets[static_cast<std::size_t>(ring) + 1] && different.size() < 3; ++i)
+      different.insert({file.xy[2 * static_cast<std::size_t>(i)], file.xy[2 * static_cast<std::size_t>(i) + 1]});
+    if (different.size() == 3) return true;
+  }
+  return false;
 }
 
 /// Points and rings of polygon p, alone.
@@ -229,7 +236,8 @@ int run(const PolygonsCommand& command) {
                                     file.number_of_features, file.size(), file.ring_offsets.size() - 1,
                                     result.points.size(), result.triangles.size() / 3);
   if (problems.mended != 0)
-    summary += fmt::format("mended      {} polygons, whose points come once more\n", problems.mended);
+    summary += fmt::format("mended      {} polygon{} in the output twice\n", problems.mended,
+                           problems.mended == 1 ? ", its points are" : "s, their points are");
   if (problems.left_out != 0) summary += fmt::format("no inside   {} polygons\n", problems.left_out);
   if (file.other_geometries != 0) summary += fmt::format("left out    {} points and lines\n", file.other_geometries);
   print_summary(summary, outputs.empty(), command.quiet);

@@ -115,8 +115,9 @@ void warn(const TriangleSwitches& switches, const Work& work, const std::string&
     say(fmt::format("cadt: -{} has no effect: it {}\n", letter, why_without_effect(letter)));
   }
   if (switches.segments) {
-    const auto holes = switches.ignore_holes ? std::span<const std::array<double, 2>>() : work.segments().holes;
-    note_far_seeds(work.input.xy, work.mesh, holes, work.segments().regions, name);
+    const TriangleSegments all = work.segments();
+    note_far_seeds(work.input.view(), work.constrained, all.holes.first(switches.ignore_holes ? 0 : all.holes.size()),
+                   all.regions.first(switches.region_attributes ? all.regions.size() : 0), name);
   }
   if (work.mesh.dimension() < 2) {
     say(fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line\n", name));

@@ -48,7 +48,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   line.clear();
   if (!options.quiet) note_other_heights(graph.points, graph.own_points, mesh.mesh(), options.segments.file);
   if (!options.quiet && constraints.domain == Domain::seeds)
-    note_far_seeds(graph.points.xy, mesh.mesh(), graph.holes, graph.regions, name);
+    note_far_seeds(graph.points.view(), mesh, graph.holes, graph.regions, name);
   judge_dimension(mesh.mesh(), name, options);
   if (mesh.mesh().dimension() >= 2 && mesh.number_inside() == 0) {
     const std::string why = fmt::format("{}: no triangles: no region is inside by --domain {}; --domain hull keeps all",

@@ -213,6 +213,7 @@ void refuse_crossings(const State& state, PointsView points, std::span<const Seg
   for (std::size_t i = 0; i < shown; ++i)
     message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
   if (shown < pairs.size()) message += ", ...";
+  message += "; repair them, or take Crossing::exact or Crossing::grid";
   constraints::check(options.stop);
   throw CrossingError(message, std::move(pairs));
 }

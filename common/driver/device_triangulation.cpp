@@ -77,6 +77,7 @@ Triangulation DeviceTriangulation::download() const {
   copy->points = data_->points;
   copy->triangle_count = data_->triangle_count;
   copy->dimension = data_->dimension;
+  copy->constrained = static_cast<bool>(data_->edge_flags);
   copy->statistics = data_->statistics;
   if (data_->state == nullptr) return Triangulation(std::move(copy));
   Device& device = *data_->state->device;

@@ -32,6 +32,8 @@ struct Triangulation::Data {
   std::vector<std::int32_t> hull;
   std::vector<Duplicate> duplicates;
   int dimension = -1;
+  bool constrained =
+      false;  ///< that of a ConstrainedTriangulation: edges may be those of segments, or beside crossings
   Statistics statistics;
   PointsView view;  ///< of the points that are kept: the caller's, or of `coordinates`
   std::vector<double> coordinates;

@@ -111,6 +111,7 @@ std::unique_ptr<Triangulation::Data> run_to_host(const std::shared_ptr<Triangula
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
+  result->constrained = job != nullptr;
   result->statistics = std::move(data.statistics);
   return result;
 }

@@ -43,8 +43,9 @@ namespace {
 std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
   verifier::require_ieee_arithmetic();
   Device& device = ctx.device;
-  const std::vector<std::uint32_t> flags = device.read_values(*mesh.edge_flags, mesh.triangles),
-                                   vertices = device.read_values(*mesh.vertices, 3 * mesh.triangles),
+  std::vector<std::uint32_t> flags;
+  if (!mesh.any_edge) flags = device.read_values(*mesh.edge_flags, mesh.triangles);
+  const std::vector<std::uint32_t> vertices = device.read_values(*mesh.vertices, 3 * mesh.triangles),
                                    across = device.read_values(*mesh.across, 3 * mesh.triangles);
   const auto xy = device.read_values<double>(*mesh.points, 2 * mesh.point_count);
   const auto corner = [&](std::size_t half_edge) {
@@ -54,7 +55,7 @@ std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
   for (std::size_t t = 0; t < mesh.triangles; ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t n = across[3 * t + k];
-      if ((!mesh.rounded && (flags[t] >> k & 1U) == 0) || n == CADT_NONE || n < t) continue;
+      if ((!mesh.any_edge && (flags[t] >> k & 1U) == 0) || n == CADT_NONE || n < t) continue;
       const std::size_t beyond = std::size_t{3} * n + (across[3 * n] == t ? 0U : across[3 * n + 1] == t ? 1U : 2U);
       if (exact_in_circle(corner(3 * t), corner(3 * t + 1), corner(3 * t + 2), corner(beyond)) > 0)
         return static_cast<std::int64_t>(3 * t + k);
@@ -67,7 +68,7 @@ std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
 
 void require_delaunay(Call& call) {
   MeshQueries::State& state = call.state;
-  if (!state.mesh.edge_flags) return;
+  if (!state.mesh.edge_flags && !state.mesh.any_edge) return;
   if (!state.not_delaunay) state.not_delaunay = first_not_delaunay(call.ctx, state.mesh);
   if (*state.not_delaunay < 0) return;
   throw NotDelaunay("edge " + std::to_string(*state.not_delaunay % 3) + " of triangle " +

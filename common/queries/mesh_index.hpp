@@ -22,7 +22,7 @@ struct CurveOrder {
 struct MeshIndex {
   Allocation points, vertices, across;
   Allocation edge_flags;  ///< a word a triangle, of constrained edges; null without segments
-  bool rounded = false;   ///< some vertices are crossings, rounded: edges beside them may not be Delaunay either
+  bool any_edge = false;  ///< others may not be Delaunay either: beside rounded crossings, or it is unknown which are
   std::size_t point_count = 0, triangles = 0;
   Allocation lowest;  ///< the lowest triangle of each point; CADT_NONE if it is no vertex
   Bounds bounds;

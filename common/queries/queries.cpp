@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/driver/registry.hpp"
+#include "common/driver/triangulation_data.hpp"
 #include "common/queries/call.hpp"
 #include "common/queries/interpolate.hpp"
 #include "common/queries/results.hpp"
@@ -68,6 +69,13 @@ void require_counterclockwise(PointsView points, std::span<const std::int32_t> t
   }
 }
 
+/// Of a constrained mesh without its segments it is not known which edges are constrained.
+void index_of(MeshQueries::State& state, PointsView points, const Triangulation& mesh) {
+  state.mesh.any_edge = mesh.data().constrained;
+  if (mesh.data().constrained) require_counterclockwise(points, mesh.triangles());
+  index(state, points, mesh.triangles(), mesh.neighbors(), true);
+}
+
 }  // namespace
 
 std::string_view to_string(Interpolation method) noexcept {
@@ -78,14 +86,14 @@ std::string_view to_string(Interpolation method) noexcept {
 MeshQueries::MeshQueries(PointsView points, const Triangulation& mesh, const Options& options) : state_(open(options)) {
   require_mesh_of(points.size(), mesh.number_of_points());
   state_->of = mesh;
-  index(*state_, points, mesh.triangles(), mesh.neighbors(), true);
+  index_of(*state_, points, mesh);
 }
 
 MeshQueries::MeshQueries(const Triangulation& mesh, const Options& options) : state_(open(options)) {
   if (mesh.points().size() != mesh.number_of_points())
     throw InputError("the mesh has not kept its points: set Options::keep_points, or give them", 0);
   state_->of = mesh;
-  index(*state_, state_->of->points(), mesh.triangles(), mesh.neighbors(), true);
+  index_of(*state_, state_->of->points(), mesh);
 }
 
 MeshQueries::MeshQueries(PointsView points, const ConstrainedTriangulation& mesh, const Options& options)
@@ -103,7 +111,7 @@ MeshQueries::MeshQueries(PointsView points, const ConstrainedTriangulation& mesh
     points = vertices;
   }
   if (!mesh.rounded_valid()) require_counterclockwise(points, of.triangles());
-  state_->mesh.rounded = added != 0;
+  state_->mesh.any_edge = added != 0;
   index(*state_, points, of.triangles(), of.neighbors(), true, mesh.edge_flags());
 }
 
@@ -132,7 +140,7 @@ MeshQueries::MeshQueries(Triangulator& triangulator, const DevicePoints& points,
   MeshIndex& index = state_->mesh;
   index.point_count = data.points;
   index.triangles = data.triangle_count;
-  index.rounded = data.added != 0;
+  index.any_edge = data.added != 0;
   if (data.points != 0) index.points = import_points(call.ctx, points);
   if (!data.rounded_valid) {
     Device& device = call.ctx.device;

@@ -47,7 +47,9 @@ constexpr Reason refused[] = {
     {'S', "limits points that refinement adds; cadt adds none"},
     {'X', "asks for inexact arithmetic; cadt is always exact: leave it out"},
     {'o', "asks for triangles of six nodes; those of cadt have three"},
-    {'C', "checks the mesh as it is written; use: cadt verify, for a .poly cadt triangulate --domain seeds --verify"},
+    {'C',
+     "checks the mesh as it is written; use: cadt verify, or for a .poly file cadt triangulate --domain seeds "
+     "--verify"},
 };
 
 /// Why letters are refused together with p, or without it.

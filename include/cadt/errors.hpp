@@ -12,7 +12,8 @@
 namespace cadt {
 
 /// Base of all exceptions that the library throws on purpose, but for std::invalid_argument where a function names it:
-/// a mistake in the calling program.
+/// a mistake in the calling program. Where the host has no memory for an array, std::bad_alloc is thrown instead of
+/// OutOfMemory, which is about devices and Options::max_memory.
 class CADT_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

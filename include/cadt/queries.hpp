@@ -131,7 +131,8 @@ class CADT_API NotDelaunay : public Error {
 /// Constrained meshes answer where queries lie, linear interpolation and rasters (breaklines), circumcentres and
 /// outlines. Nearest vertices (Outside::nearest is such a question), natural neighbours, Voronoi diagrams and empty
 /// circles are right as long as all edges, constrained or beside rounded crossings, happen to be Delaunay, which the
-/// first such question examines in O(triangles); else it is refused: NotDelaunay.
+/// first such question examines in O(triangles); else it is refused: NotDelaunay. All triangles of the hull are asked,
+/// whatever the domain is.
 class CADT_API MeshQueries {
  public:
   /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as

@@ -102,6 +102,7 @@ class CADT_API Triangulation {
 
   struct Data;  // internal
   explicit Triangulation(std::unique_ptr<Data> data);
+  [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
  private:
   std::shared_ptr<const Data> data_;

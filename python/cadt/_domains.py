@@ -82,8 +82,9 @@ class DomainMesh(Mesh):
         return _show.to_meshio(self, z, inside)
 
     def save(self, path: Any, z: Any = None, *, inside: bool = True) -> None:
-        """As `Delaunay.save`: the triangles inside, or with ``inside=False`` all, with the region of each. Archives of
-        NumPy have neighbors and convex_hull if no triangle is left out."""
+        """As `Delaunay.save`: the triangles inside, or with ``inside=False`` all. ``.npz``, ``.vtk``, ``.vtu`` and ``.mesh``
+        have the region of each; ``.npz`` has neighbors and convex_hull if no triangle is left out. Raises InputError if none
+        is inside, too."""
         _show.save(self, path, z, inside)
 
     # Plumbing

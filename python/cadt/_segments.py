@@ -127,7 +127,8 @@ def find_crossings(
 ) -> np.ndarray:
     """All pairs of segments that cross: (p, 2) int32, the lower index first, ascending. Exact.
 
-    Segments, polylines and rings are given and numbered as those of `ConstrainedDelaunay`. Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected, on the
+    Segments, polylines and rings are given and numbered as those of `ConstrainedDelaunay`; without any there are no pairs.
+    Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected, on the
     host, in 100 to 200 bytes a pair. The GIL is released; Ctrl-C ends it.
 
     Raises

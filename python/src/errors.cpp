@@ -51,8 +51,9 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   } catch (const cadt::CrossingError& e) {
     std::vector<std::int32_t> pairs;
     for (const auto& pair : e.pairs()) pairs.insert(pairs.end(), pair.begin(), pair.end());
-    const std::string advice = "; repair them, or take crossing=\"exact\" or crossing=(\"grid\", width)";
-    raise("CrossingError", (e.what() + advice).c_str(), array_of(std::move(pairs), 2));
+    const std::string what = e.what(),
+                      advice = "; repair them, or take crossing=\"exact\" or crossing=(\"grid\", width)";
+    raise("CrossingError", (what.substr(0, what.find(';')) + advice).c_str(), array_of(std::move(pairs), 2));
   } catch (const cadt::DomainError& e) {
     const std::string advice = ", or take domain=\"layers\" or domain=\"outer\"";
     raise("DomainError", (e.what() + advice).c_str(), e.vertex());

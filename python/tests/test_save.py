@@ -79,6 +79,10 @@ def test_what_is_inside_is_written_with_its_region(tmp_path: Path) -> None:
         with np.load(tmp_path / "mesh.npz") as f:
             assert np.array_equal(f["simplices"], mesh.simplices[kept]) and np.array_equal(f["region"], mesh.region[kept])
             assert ("neighbors" in f) == ("convex_hull" in f) == (not inside)
+    none = cadt.ConstrainedDelaunay(ring, domain="outer")
+    with pytest.raises(cadt.InputError, match="no triangle is inside; inside=False"):
+        none.save(tmp_path / "none.npz")
+    none.save(tmp_path / "none.npz", inside=False)
     meshio = pytest.importorskip("meshio")
     mesh.save(tmp_path / "mesh.vtu")
     read = meshio.read(tmp_path / "mesh.vtu")

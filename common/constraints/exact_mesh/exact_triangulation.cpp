@@ -33,6 +33,7 @@ Triangulation triangulation_of(const Triangulation& delaunay, const constraints:
   auto data = std::make_unique<Triangulation::Data>();
   data->points = delaunay.number_of_points() + added_xy.size() / 2;
   data->triangle_count = count;
+  data->constrained = true;
   data->triangles = make_words(3 * count);
   data->neighbors = make_words(3 * count);
   edge_flags.assign(count, 0);

@@ -198,7 +198,7 @@ std::int32_t MeshEditor::fill(const Side& side) {
 bool MeshEditor::fill_at_random(const Side& side, std::int32_t low, std::int32_t high, Edge parent) {
   std::vector<exact::Place> chain;
   for (std::int32_t i = low; i <= high; ++i) chain.push_back(in_.place(side.chain[static_cast<std::size_t>(i)]));
-  const std::optional<ChainMesh> mesh = insert_at_random(exact_, chain);
+  const std::optional<ChainMesh> mesh = insert_at_random(exact_, chain, check_stop_);
   if (!mesh) return false;
   std::vector<std::int32_t> number(mesh->triangles.size());
   for (std::int32_t& t : number) t = take_triangle();

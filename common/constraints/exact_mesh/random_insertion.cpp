@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/constraints/exact_mesh/random_insertion.hpp"
 
+#include <cmath>
 #include <deque>
 #include <numeric>
 #include <random>
@@ -21,9 +22,10 @@ class GrowingPolygon {
     queued_.assign(mesh_.triangles.size(), 0);
   }
 
-  std::optional<ChainMesh> triangulate() {
+  std::optional<ChainMesh> triangulate(const StopCheck& check_stop) {
     if (!take_out()) return std::nullopt;
     for (; !out_.empty(); out_.pop_back()) {
+      if (out_.size() % vertices_a_check == 0) check_stop();
       if (!insert(out_.back())) return std::nullopt;
       legalize();
     }
@@ -31,6 +33,8 @@ class GrowingPolygon {
   }
 
  private:
+  static constexpr std::size_t vertices_a_check = 4096;
+
   /// A vertex that is not in the polygon, and those that were on its sides.
   struct Out {
     std::int32_t before, vertex, after;
@@ -43,10 +47,24 @@ class GrowingPolygon {
   [[nodiscard]] std::int32_t corner(std::int32_t t, std::int32_t k) const {
     return mesh_.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k % 3)];
   }
-  /// About the distance from the base, times its length.
+  /// A sum of two doubles: a vertex may be an ulp from the base.
+  struct Pair {
+    double high, low;
+  };
+  [[nodiscard]] static Pair difference(double a, double b) {
+    const double high = a - b, part = high - a;
+    return {high, (a - (high - part)) - (b + part)};
+  }
+  [[nodiscard]] static Pair product(const Pair& a, const Pair& b) {
+    const double high = a.high * b.high;
+    return {high, std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high)};
+  }
+  /// The distance from the base of a rounded place, times its length.
   [[nodiscard]] double height(std::int32_t v) const {
     const Place &p = chain_.front(), &q = chain_.back(), &x = at(v);
-    return (q.x - p.x) * (x.y - p.y) - (q.y - p.y) * (x.x - p.x);
+    const Pair left = product(difference(q.x, p.x), difference(x.y, p.y)),
+               right = product(difference(q.y, p.y), difference(x.x, p.x)), all = difference(left.high, right.high);
+    return all.high + (all.low + (left.low - right.low));
   }
 
   /// All vertices but the ends of the base. False: it does not come to an end.
@@ -157,8 +175,9 @@ class GrowingPolygon {
 
 }  // namespace
 
-std::optional<ChainMesh> insert_at_random(const exact::ImplicitPoints& exact, std::span<const Place> chain) {
-  return GrowingPolygon(exact, chain).triangulate();
+std::optional<ChainMesh> insert_at_random(const exact::ImplicitPoints& exact, std::span<const Place> chain,
+                                          const StopCheck& check_stop) {
+  return GrowingPolygon(exact, chain).triangulate(check_stop);
 }
 
 }  // namespace cadt::constraints

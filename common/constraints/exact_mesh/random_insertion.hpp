@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/constraints/exact/implicit_point.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <array>
 #include <cstdint>
@@ -23,8 +24,9 @@ struct ChainMesh {
 /// The triangulation of the polygon of a chain and its base, left of which all other vertices are, whose edges are
 /// legal; as in random_insertion.dev.h, for vertices that may be crossings. Near linear expected time. None, if the
 /// rounded distances from the base are too close to each other. \pre at least three vertices; each is visible from the
-/// base
+/// base. \throws what check_stop throws
 [[nodiscard]] std::optional<ChainMesh> insert_at_random(const exact::ImplicitPoints& exact,
-                                                        std::span<const exact::Place> chain);
+                                                        std::span<const exact::Place> chain,
+                                                        const StopCheck& check_stop);
 
 }  // namespace cadt::constraints

@@ -14,7 +14,7 @@
  * one that no triangle strip along the base has (J. R. Shewchuk, B. C. Brown, "Fast segment insertion and incremental
  * construction of constrained Delaunay triangulations", 2015). Then triangles around a vertex have an area in the end,
  * though others of the polygon so far may lie upon them; those of the whole chain do not, as it does not cross itself.
- * Distances are rounded: if that fails, the chain is divided after all.
+ * Distances are rounded: should that fail, the chain is divided after all.
  *
  * Meanwhile triangles have places as corners instead of vertices, CADT_NONE stands across the edges of the polygon, and
  * the word of its flags (`next_queued`) links a triangle to the next one in the queue of those to be looked at. While a
@@ -139,10 +139,18 @@ CADT_FN void cadt_make_legal(cadt_growing* a, cadt_counters* counters) {
   }
 }
 
-/* About the distance of a place from the base, times its length. */
+/* The distance of a place from the base, times its length, rounded: by sums of two doubles where there are such, as
+ * vertices may be an ulp from the base. */
 CADT_FN cadt_real cadt_height_of(const cadt_growing* a, cadt_u32 low, cadt_u32 place) {
   const cadt_point p = cadt_point_at(a, low), q = cadt_point_at(a, a->high), x = cadt_point_at(a, place);
+#if CADT_GRADUAL_UNDERFLOW
+  cadt_pair right = cadt_pair_product(cadt_pair_difference(q.y, p.y), cadt_pair_difference(x.x, p.x));
+  right.high = -right.high;
+  right.low = -right.low;
+  return cadt_pair_sum(cadt_pair_product(cadt_pair_difference(q.x, p.x), cadt_pair_difference(x.y, p.y)), right).high;
+#else
   return (q.x - p.x) * (x.y - p.y) - (q.y - p.y) * (x.x - p.x);
+#endif
 }
 
 enum { CADT_TAKE_OUT_ROUNDS = 256 /* each one takes out about a quarter at least */ };

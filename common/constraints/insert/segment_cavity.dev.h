@@ -105,7 +105,7 @@ CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings
 enum { CADT_CHAIN_STACK = 32 /* the longer side of each triangle waits: each next one is at most half as long */ };
 
 /* A chain that divides well takes a few times its length and its logarithm to be filled. What is left, above
- * CADT_CHAIN_SMALL, when the work of so many times the length is done is filled by random insertion, where a vertex
+ * CADT_CHAIN_SMALL, once that has cost CADT_CHAIN_WORK times the length is filled by random insertion, where a vertex
  * takes as long as about so many places. */
 #ifndef CADT_CHAIN_WORK /* a test takes less */
 #define CADT_CHAIN_WORK (CADT_CONTIGUOUS ? 40 : 8)

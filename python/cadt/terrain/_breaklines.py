@@ -63,9 +63,9 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
         raise FileError(path, f"cannot be read: {why(error)}") from error
     if len(geometry) < layer.count and suffix_of(path) != "shp":
         raise truncated(path, len(geometry), layer.count)
-    crs = parse_crs(path, layer.crs)
-    if not same_crs(crs, cloud.crs):
-        if asked is None:
+    if asked is None:
+        crs = parse_crs(path, layer.crs)
+        if not same_crs(crs, cloud.crs):
             raise CrsError(
                 path,
                 f"its reference system is {name_of(crs)}, that of the points is {name_of(cloud.crs)}; transform one of "
@@ -84,8 +84,20 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
         raise FileError(path, f"feature {feature[first]} (counted from 0) has no finite coordinates")
     if suffix_of(path) == "geojson" and (xyz[:, 2] == 0).any():
         xyz[_without_height(path, given, len(xyz)), 2] = np.nan
-    other_crs = name_of(crs) if crs is not None and not same_crs(crs, cloud.crs) else ""
+    other_crs = "" if asked is None else _other_crs(path, layer.crs, cloud)
     return Breaklines(path, xyz, offsets, feature, other_crs)
+
+
+def _other_crs(path: str, stated: str | None, cloud: Cloud) -> str:
+    """The reference system that the file states, if it is another one than --crs. GDAL states WGS 84 for GeoJSON that
+    states none."""
+    try:
+        crs = parse_crs(path, stated)
+    except CrsError:
+        return ""
+    if crs is None or cloud.crs is None or same_crs(crs, cloud.crs):
+        return ""
+    return "" if suffix_of(path) == "geojson" and crs.to_epsg() in (4326, 4979) else name_of(crs)
 
 
 def _without_height(path: str, features: NDArray[np.integer], count: int) -> NDArray[np.bool_]:
@@ -101,9 +113,13 @@ def _without_height(path: str, features: NDArray[np.integer], count: int) -> NDA
                 add(part)
 
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            root = json.load(file)
-        all_features = root["features"] if root["type"] == "FeatureCollection" else [root]
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
+            text = file.read()
+        try:
+            root = json.loads(text)
+            all_features = root["features"] if root["type"] == "FeatureCollection" else [root]
+        except ValueError:  # a feature a line
+            all_features = [json.loads(line) for line in text.replace("\x1e", "").splitlines() if line.strip()]
         for i in features:
             add(all_features[i].get("geometry", all_features[i])["coordinates"])
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
@@ -208,20 +224,20 @@ def _begins_of_segments(lines: Breaklines) -> NDArray[np.intp]:
 
 
 def _far_heights(lines: Breaklines, cloud: Cloud) -> str:
-    """The height of the file that is furthest from those of the points, in words, if it is further than these are apart:
-    most often it is none, such as 0 or -9999."""
+    """The height of the file that is furthest from those of the points, in words, if it is likely to be none, such as 0
+    or -9999: further than the points' are apart, and 0, or ten times as far."""
     low, high = float(cloud.z.min()), float(cloud.z.max())
     z = lines.xyz[:, 2]
     beyond = np.where(np.isnan(z), 0, np.maximum(low - z, z - high))
-    far = np.flatnonzero(beyond > high - low)
+    far = np.flatnonzero((beyond > high - low) & ((z == 0) | (beyond > 10 * (high - low))))
     if len(far) == 0 or high == low:
         return ""
-    worst = int(np.argmax(beyond))
+    worst = int(far[np.argmax(beyond[far])])
     x, y, height = lines.xyz[worst]
     more = f", and {len(far) - 1} more such points" if len(far) > 1 else ""
     return (
         f"feature {_feature_of(lines, np.array([worst]))[0]} (counted from 0) has the height {height:.12g} at {x:.12g} {y:.12g}"
-        f"{more}; those of the points are {low:.12g} to {high:.12g}: is it one, and in the same unit?"
+        f"{more}; those of the points are {low:.12g} to {high:.12g}: does it stand for no height, or for another unit?"
     )
 
 
@@ -289,7 +305,8 @@ def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
         of = _feature_of(lines, begin)
         who = f"feature {of[0]} crosses itself" if of[0] == of[1] else f"features {of[0]} and {of[1]} cross"
         places.append(f"{who} at {x:.12g} {y:.12g}")
-    more = f", and so do {len(pairs) - 5} more pairs of segments" if len(pairs) > 5 else ""
+    others = len(pairs) - len(places)
+    more = f", and so {'do' if others > 1 else 'does'} {others} more pair{'s' if others > 1 else ''} of segments" if others else ""
     return (
         f"{', '.join(places)}{more} (features counted from 0); breaklines may touch, but not cross: "
         "give both a point there, or remove one"

@@ -52,7 +52,7 @@ def contour_lines(
 
     Raises
     ------
-    ValueError
+    InputError
         `z` has not one finite height for each of the mesh's points.
 
     Notes
@@ -62,8 +62,9 @@ def contour_lines(
     corners = np.asarray(mesh.simplices)
     neighbors = np.asarray(mesh.neighbors)
     points = np.asarray(mesh.points)
+    z = np.asarray(z, np.float64)
     if z.shape != (len(points),) or not np.isfinite(z).all():
-        raise ValueError(f"z must have a finite height for each of the mesh's {len(points)} points, so the shape ({len(points)},)")
+        raise cadt.InputError(f"z must have shape ({len(points)},): a finite height for each point of the mesh", 0)
     if not float(z.max() - z.min()) / interval < 1 << 31:
         raise UsageError(f"--interval {interval:g}: the heights span {z.max() - z.min():g}; take a larger one")
     # The level of a vertex: the highest line at or below it. A triangle has the lines above its lowest level, up to its

@@ -115,7 +115,21 @@ def test_geojson_of_which_some_positions_have_no_height(las, tmp_path, cadt_terr
     (tmp_path / "one.geojson").write_text(json.dumps({"type": "LineString", "coordinates": part}))
     result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", "one.geojson", "--crs", "EPSG:25832")
     assert "with 2 points; heights of the file, but 1 from the points" in result.err
-    assert "warning: one.geojson: its reference system is WGS 84" in result.err
+    assert "its reference system" not in result.err  # GDAL's guess
+    features = [{"type": "Feature", "properties": {"a": "\xe9"}, "geometry": g} for g in geometries[:1] * 2]
+    (tmp_path / "text.geojson").write_bytes("\n".join(json.dumps(f, ensure_ascii=False) for f in features).encode("latin-1"))
+    result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", "text.geojson", "--crs", "EPSG:25832")
+    assert "breaklines  2, with 4 points; heights of the file, but 2 from the points" in result.err
+
+
+def test_the_reference_system_of_lines_that_crs_overrides(las, tmp_path, cadt_terrain):
+    las("scan.laz", scattered())
+    other = write(tmp_path / "other.gpkg", [bank(40)], "EPSG:25833")
+    words = ("tin", "scan.laz", "t.ply", "--breaklines", other, "--crs")
+    says = "warning: other.gpkg: its reference system is ETRS89 / UTM zone 33N; it is taken for ETRS89 / UTM zone 32N, as --crs"
+    assert says in cadt_terrain(*words, "EPSG:25832").err
+    assert "its reference system" not in cadt_terrain(*words, "none").err
+    assert "its reference system" not in cadt_terrain(*words, "EPSG:25833").err
 
 
 def test_heights_far_from_those_of_the_points(las, tmp_path, cadt_terrain):
@@ -124,6 +138,8 @@ def test_heights_far_from_those_of_the_points(las, tmp_path, cadt_terrain):
     name = write(tmp_path / "nodata.gpkg", lines)
     result = cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", name)
     assert "warning: nodata.gpkg: feature 1 (counted from 0) has the height -9999 at 500020 5400050; " in result.err
+    dike = shapely.LineString([(*(AT + [20, 50]), 330), (*(AT + [80, 50]), 330)])
+    assert "warning" not in cadt_terrain("tin", "scan.laz", "t.ply", "--breaklines", write(tmp_path / "dike.gpkg", [dike])).err
 
 
 @pytest.mark.parametrize("command, out", [("raster", "t.tif"), ("contour", "t.gpkg"), ("tin", "t.ply")])

@@ -116,7 +116,7 @@ def test_a_height_for_each_point():
     points = hills(100, at=(0, 0))
     mesh = cadt.Delaunay(points[:, :2])
     for z in (points[:-1, 2], points, np.where(np.arange(len(points)) == 7, np.nan, points[:, 2])):
-        with pytest.raises(ValueError, match=f"a finite height for each of the mesh's {len(points)} points"):
+        with pytest.raises(cadt.InputError, match=rf"z must have shape \({len(points)},\): a finite height for each"):
             terrain.contour_lines(mesh, z, 2.5)
 
 

@@ -187,12 +187,18 @@ class Segments(CliTest):
         self.write("near.poly", square + "1\n1 4 2\n1\n1 2 2 7 0\n")
         for words in (["triangulate", "--domain", "seeds"], ["triangle", "-pA"]):
             err = self.cadt(*words, "far.poly").err
-            self.assertIn("warning: far.poly: 2 of its holes are beyond the hull of the points, and without effect; the first is at 4 5\n", err)
-            self.assertIn("warning: far.poly: 1 of its regions is beyond the hull of the points, and without effect; the first is at 2 -1\n", err)
-            self.assertNotIn("beyond", self.cadt(*words, "near.poly").err)
+            self.assertIn("warning: far.poly: 2 of its holes are outside of the points' extent, and without effect; the first is at 4 5\n", err)
+            self.assertIn("warning: far.poly: 1 of its regions is outside of the points' extent, and without effect; the first is at 2 -1\n", err)
+            self.assertNotIn("outside of", self.cadt(*words, "near.poly").err)
         for words in (["triangulate"], ["triangulate", "--domain", "seeds", "-q"], ["triangle", "-pQ"]):
-            self.assertNotIn("beyond", self.cadt(*words, "far.poly").err)
+            self.assertNotIn("outside of", self.cadt(*words, "far.poly").err)
+        self.assertIn("holes", self.cadt("triangle", "-p", "far").err)
+        self.assertNotIn("regions", self.cadt("triangle", "-p", "far").err)
         self.assertNotIn("holes", self.cadt("triangle", "-pO", "far").err)
+        # On a grid the extent is that of the moved points.
+        self.write("grid.poly", "4 2 0 0\n1 0.4 0.4\n2 3.6 0.4\n3 3.6 3.6\n4 0.4 3.6\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n1\n1 0.2 0.3\n")
+        words = ["triangulate", "--domain", "seeds", "--crossing", "grid=1", "grid.poly"]
+        self.assertNotIn("outside of", self.cadt(*words).err)
 
     def test_notes_and_empty_meshes(self):
         self.assertIn("--domain seeds uses them", self.cadt("triangulate", "plate.poly").err)

@@ -79,7 +79,7 @@ class Polygons(CliTest):
         points, triangles = self.off("m.off")
         self.assertEqual(area_of(points, triangles) / 2, 16 + 8)
         self.assertEqual(points[12:], [(2, 2)])
-        self.assertIn("mended      1 polygons", self.cadt("polygons", "a.geojson", "--crossing", "exact").out)
+        self.assertIn("mended      1 polygon, its points are in the output twice", self.cadt("polygons", "a.geojson", "--crossing", "exact").out)
         flat = [[0, 0], [1, 1], [2, 2], [0, 0]]
         self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
         err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
@@ -94,7 +94,7 @@ class Polygons(CliTest):
 
     def test_files_of_gdal_can_be_converted(self):
         for suffix in ("shp", "gpkg"):
-            self.fails(2, "polygons", "a." + suffix, says=f"one of: geojson json; ogr2ogr OUT.geojson a.{suffix} makes one of them")
+            self.fails(2, "polygons", "a." + suffix, says=f"one of: geojson json; ogr2ogr OUT.geojson 'a.{suffix}' makes one of them")
 
     def test_a_grid_moves_those_that_cross_alone(self):
         dot = [[1, 1]]
@@ -137,6 +137,8 @@ class Polygons(CliTest):
             err = self.cadt("polygons", name, "-o", "m.off").err
             self.assertIn("1 of 1 polygons has no inside", err)
             self.assertNotIn("--crossing", err)
+        self.write("d.json", json.dumps(polygon(SQUARE[:2] * 3)))
+        self.assertNotIn("--crossing", self.cadt("polygons", "d.json", "-o", "m.off").err)
 
     def test_heights_that_some_positions_lack_are_left_out_with_a_note(self):
         high = [[x, y, 1] for x, y in SQUARE]

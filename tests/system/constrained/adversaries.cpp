@@ -202,6 +202,19 @@ Drawing loose_ends(int n) {
   return d;
 }
 
+/// Points along a segment, as near as doubles are.
+Drawing along_a_rounded_line(int n) {
+  Drawing d;
+  Random random(11);
+  const std::int32_t left = d.add(0.1, 0.3), right = d.add(7.7, 2.9);
+  for (int i = 0; i < n; ++i) {
+    const double part = random.uniform();
+    d.add(0.1 + part * 7.6, 0.3 + part * 2.6);
+  }
+  d.join(left, right);
+  return d;
+}
+
 /// Two columns of points and a rung at their top: below it the chain goes down, across and up again.
 Drawing columns(int n, bool all_rungs) {
   Drawing d;
@@ -274,6 +287,7 @@ const std::vector<Adversary>& adversaries() {
                                              {"parabola", [](int n) { return parabola_beside(n / 2); }},
                                              {"loose_ends", [](int n) { return loose_ends(n / 2); }},
                                              {"slanted_teeth", [](int n) { return slanted_teeth(n / 4); }},
+                                             {"along_a_rounded_line", along_a_rounded_line},
                                              {"columns", [](int n) { return columns(n / 2, false); }},
                                              {"rungs_of_columns", [](int n) { return columns(n / 2, true); }}};
   return all;

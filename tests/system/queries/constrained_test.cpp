@@ -150,6 +150,30 @@ TEST_P(ConstrainedQueries, WhatTakesADelaunayMeshIsRefused) {
   refused([&] { (void)of_arrays.nearest_vertex(where); });
 }
 
+/// ConstrainedTriangulation::mesh() does not say which edges are constrained.
+TEST_P(ConstrainedQueries, AMeshWithoutItsSegmentsIsExamined) {
+  const Ditch ditch;
+  const std::span<const double> xy(ditch.xy);
+  const auto mesh = triangulate_constrained(xy, ditch.banks, {}, options());
+  MeshQueries of_banks(xy, mesh.mesh(), options());
+  const Points where = {0.5, 0.5};
+  EXPECT_NE(thrown<NotDelaunay>([&] { (void)of_banks.nearest_vertex(where); }), nullptr);
+  EXPECT_NE(thrown<NotDelaunay>([&] { (void)of_banks.voronoi_polygons({0, 0, 1, 1}); }), nullptr);
+  EXPECT_EQ(of_banks.locate(where).size(), 1U);
+  MeshQueries of_none(xy, triangulate_constrained(xy, {}, {}, options()).mesh(), options());
+  EXPECT_EQ(of_none.nearest_vertex(where),
+            MeshQueries(xy, triangulate(xy, options()), options()).nearest_vertex(where));
+  ConstraintOptions exact;
+  exact.crossing = Crossing::exact;
+  const Points cross = {0, 0, 4, 4, 0, 4, 4, 0, 2, 1.9};
+  const std::vector<Segment> segments = {{0, 1}, {2, 3}};
+  const auto crossed = triangulate_constrained(cross, segments, exact, options());
+  Points all(cross);
+  all.insert(all.end(), crossed.added_points().begin(), crossed.added_points().end());
+  MeshQueries of_crossed(all, crossed.mesh(), options());
+  (void)of_crossed.locate(where);
+}
+
 TEST_P(ConstrainedQueries, SegmentsThatAreDelaunayEdgesChangeNothing) {
   const Asked set("", uniform_points(300, 4));
   const auto all = edges(set.mesh);
@@ -215,6 +239,9 @@ TEST_P(ConstrainedQueries, TrianglesThatAreTurnedOverAreRefused) {
     ASSERT_NE(error, nullptr);
     EXPECT_EQ(error->check(), "orientation");
     EXPECT_GE(error->first(), 0);
+    Points all(xy);
+    all.insert(all.end(), mesh.added_points().begin(), mesh.added_points().end());
+    EXPECT_NE(thrown<InvalidMesh>([&] { MeshQueries(all, mesh.mesh(), options()); }), nullptr);
   }
   EXPECT_GT(invalid, 0U);
 }

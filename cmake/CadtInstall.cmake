@@ -62,7 +62,8 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cadtConfig.cmake ${CMAKE_CURRENT_BINAR
 set(cadt_private_libraries "-pthread ${CMAKE_DL_LIBS}")
 string(REGEX REPLACE " ([a-z])" " -l\\1" cadt_private_libraries "${cadt_private_libraries}")
 if(CADT_HAVE_CUDA)
-  string(APPEND cadt_private_libraries " -lcudart_static -lrt")
+  get_filename_component(cudart_folder "${CUDA_cudart_static_LIBRARY}" DIRECTORY)  # that FindCUDAToolkit has cached
+  string(APPEND cadt_private_libraries " -L${cudart_folder} -lcudart_static -lrt")
 endif()
 file(RELATIVE_PATH cadt_pc_to_include ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 configure_file(cmake/cadt.pc.in ${CMAKE_CURRENT_BINARY_DIR}/cadt.pc.in @ONLY)

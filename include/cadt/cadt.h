@@ -149,7 +149,7 @@ typedef struct cadt_statistics {
   uint64_t threads, points, distinct, launches, lock_attempts, lock_failures, flips, exact_orientations,
       exact_incircles, ties;
   uint64_t proven_stars, wrapped_stars, sets, batched_sets, bytes_device_peak;
-  double milliseconds; /* of all phases; 0 with CADT_STATISTICS_NONE */
+  double milliseconds; /* of all phases (statistics.hpp); 0 with CADT_STATISTICS_NONE */
   int32_t certified;
   uint64_t bytes_to_device, bytes_from_device;
   uint64_t inserted_segments, segment_retries; /* constrained.h */

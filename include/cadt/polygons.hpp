@@ -79,7 +79,8 @@ class CADT_API PolygonsResult {
 /// Inside is what an odd number of rings goes around. The triangles are those of the constrained Delaunay triangulation
 /// of the polygon's points and edges (triangulate_constrained with Domain::even_odd). Rings may touch themselves and
 /// each other, in points and along edges, and may go along an edge twice. A polygon whose edges cross or that has
-/// another defect has no triangles and is listed in PolygonsResult::problems(); the others do not suffer.
+/// another defect, such as a hole of one or two points, has no triangles and is listed in PolygonsResult::problems();
+/// the others do not suffer.
 ///
 /// All views are read only and need to live until the call returns. Small polygons are each the work of one thread of
 /// the device, those of more than 512 points of a call of their own. O(n log n) expected for each polygon of n points,

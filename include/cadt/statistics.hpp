@@ -92,7 +92,8 @@ struct Statistics {
   /// Empty without StatisticsDetail::timing, on devices without a clock, and with `wide_arithmetic`.
   std::vector<std::pair<std::string, double>> thread_time;
 
-  /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.
+  /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}. The host's work between launches is in none of
+  /// them, such as that for crossings on a grid or by exact places.
   std::vector<std::pair<std::string, double>> milliseconds;
 
   /// With Tuning::kernel_times: the time of each kernel, the longest first; else empty. Copies and fills of memory do

@@ -39,17 +39,17 @@ typedef struct {
   cadt_u32 high;        /* the last place */
   cadt_u32 base;        /* the half-edge of the base */
   cadt_u32 first, last; /* of the queue; CADT_NONE: it is empty */
-} cadt_growing;
+} cadt_growing_polygon;
 
 #define CADT_QUEUE_END 0xFFFFFFFEu /* the last triangle of the queue has it, one that is not in it 0 */
 
-CADT_FN cadt_point cadt_point_at(const cadt_growing* a, cadt_u32 place) {
+CADT_FN cadt_point cadt_point_at(const cadt_growing_polygon* a, cadt_u32 place) {
   return cadt_load_point(a->m->points + a->rings->vertex[place]);
 }
 
 /* What stands across edge k of triangle t, and there its edge in turn; an edge of the polygon is known by the place
  * that it goes to. */
-CADT_FN void cadt_set_side(cadt_growing* a, cadt_u32 t, cadt_u32 k, cadt_u32 across) {
+CADT_FN void cadt_set_side(cadt_growing_polygon* a, cadt_u32 t, cadt_u32 k, cadt_u32 across) {
   const cadt_u32 half_edge = CADT_HALF_EDGE(t, k), to = cadt_corner_of(a->m, t, CADT_PREV(k));
   a->m->across[3u * t + k] = across;
   if (across != CADT_NONE)
@@ -60,14 +60,14 @@ CADT_FN void cadt_set_side(cadt_growing* a, cadt_u32 t, cadt_u32 k, cadt_u32 acr
     a->rings->edge[to] = half_edge;
 }
 
-CADT_FN void cadt_set_corners(const cadt_growing* a, cadt_u32 t, cadt_u32 u, cadt_u32 v, cadt_u32 w) {
+CADT_FN void cadt_set_corners(const cadt_growing_polygon* a, cadt_u32 t, cadt_u32 u, cadt_u32 v, cadt_u32 w) {
   a->m->vertices[3u * t] = u;
   a->m->vertices[3u * t + 1u] = v;
   a->m->vertices[3u * t + 2u] = w;
 }
 
 /* The triangle behind all others in the queue, unless it is in it. */
-CADT_FN void cadt_enqueue(cadt_growing* a, cadt_u32 t) {
+CADT_FN void cadt_enqueue(cadt_growing_polygon* a, cadt_u32 t) {
   CADT_GLOBAL cadt_u32* next_queued = a->m->edge_flags;
   if (next_queued[t]) return;
   next_queued[t] = CADT_QUEUE_END;
@@ -79,7 +79,7 @@ CADT_FN void cadt_enqueue(cadt_growing* a, cadt_u32 t) {
 }
 
 /* Flips edge k of triangle t: x v w and y w v become x v y and x y w, the first one in t. Returns the other one. */
-CADT_FN cadt_u32 cadt_flip_edge(cadt_growing* a, cadt_u32 t, cadt_u32 k) {
+CADT_FN cadt_u32 cadt_flip_edge(cadt_growing_polygon* a, cadt_u32 t, cadt_u32 k) {
   const cadt_u32 behind = a->m->across[3u * t + k], u = CADT_TRIANGLE_OF(behind), j = CADT_EDGE_OF(behind);
   const cadt_u32 x = cadt_corner_of(a->m, t, k), v = cadt_corner_of(a->m, t, CADT_NEXT(k)),
                  w = cadt_corner_of(a->m, t, CADT_PREV(k)), y = cadt_corner_of(a->m, u, j);
@@ -96,7 +96,7 @@ CADT_FN cadt_u32 cadt_flip_edge(cadt_growing* a, cadt_u32 t, cadt_u32 k) {
 }
 
 /* Inserts place x between places v and w, next to each other so far, in triangle t. Returns whether it could. */
-CADT_FN cadt_u32 cadt_insert_place(cadt_growing* a, cadt_u32 v, cadt_u32 x, cadt_u32 w, cadt_u32 t,
+CADT_FN cadt_u32 cadt_insert_place(cadt_growing_polygon* a, cadt_u32 v, cadt_u32 x, cadt_u32 w, cadt_u32 t,
                                    cadt_counters* counters) {
   const cadt_u32 behind = a->base == CADT_NONE ? CADT_NONE : a->rings->edge[v];
   cadt_set_corners(a, t, x, v, w);
@@ -119,7 +119,7 @@ CADT_FN cadt_u32 cadt_insert_place(cadt_growing* a, cadt_u32 v, cadt_u32 x, cadt
 }
 
 /* Flips until no edge is illegal. */
-CADT_FN void cadt_make_legal(cadt_growing* a, cadt_counters* counters) {
+CADT_FN void cadt_make_legal(cadt_growing_polygon* a, cadt_counters* counters) {
   CADT_GLOBAL cadt_u32* next_queued = a->m->edge_flags;
   while (a->first != CADT_NONE) {
     const cadt_u32 t = a->first;
@@ -141,7 +141,7 @@ CADT_FN void cadt_make_legal(cadt_growing* a, cadt_counters* counters) {
 
 /* The distance of a place from the base, times its length, rounded: by sums of two doubles where there are such, as
  * vertices may be an ulp from the base. */
-CADT_FN cadt_real cadt_height_of(const cadt_growing* a, cadt_u32 low, cadt_u32 place) {
+CADT_FN cadt_real cadt_height_of(const cadt_growing_polygon* a, cadt_u32 low, cadt_u32 place) {
   const cadt_point p = cadt_point_at(a, low), q = cadt_point_at(a, a->high), x = cadt_point_at(a, place);
 #if CADT_GRADUAL_UNDERFLOW
   cadt_pair right = cadt_pair_product(cadt_pair_difference(q.y, p.y), cadt_pair_difference(x.x, p.x));
@@ -156,7 +156,7 @@ CADT_FN cadt_real cadt_height_of(const cadt_growing* a, cadt_u32 low, cadt_u32 p
 enum { CADT_TAKE_OUT_ROUNDS = 256 /* each one takes out about a quarter at least */ };
 
 /* Takes out all places of a chain but one. Returns the last one; CADT_NONE: it does not come to an end. */
-CADT_FN cadt_u32 cadt_take_out(const cadt_growing* a, cadt_u32 low) {
+CADT_FN cadt_u32 cadt_take_out(const cadt_growing_polygon* a, cadt_u32 low) {
   cadt_u32 left = a->high - low - 1u, out = CADT_NONE;
   for (cadt_u32 x = low; x < a->high; ++x) a->rings->piece[x] = x + 1u;
   for (cadt_u32 round = 0u; left; ++round) {
@@ -191,7 +191,7 @@ CADT_FN cadt_u32 cadt_take_out(const cadt_growing* a, cadt_u32 low) {
 /* All triangles of a chain, but for the other side of its base, whose half-edge is returned; CADT_NONE: not so. */
 CADT_FN cadt_u32 cadt_fill_at_random(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
                                      cadt_counters* counters) {
-  cadt_growing a = {m, rings, c->high, CADT_NONE, CADT_NONE, CADT_NONE};
+  cadt_growing_polygon a = {m, rings, c->high, CADT_NONE, CADT_NONE, CADT_NONE};
   cadt_u32 x = cadt_take_out(&a, c->low);
   if (x == CADT_NONE) return CADT_NONE;
   while (x != CADT_NONE) {

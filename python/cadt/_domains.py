@@ -83,8 +83,8 @@ class DomainMesh(Mesh):
 
     def save(self, path: Any, z: Any = None, *, inside: bool = True) -> None:
         """As `Delaunay.save`: the triangles inside, or with ``inside=False`` all. ``.npz``, ``.vtk``, ``.vtu`` and ``.mesh``
-        have the region of each; ``.npz`` has neighbors and convex_hull if no triangle is left out. Raises InputError if none
-        is inside, too."""
+        have the region of each; ``.npz`` has neighbors and convex_hull if no triangle is left out. For others than ``.npz``
+        a triangle must be inside."""
         _show.save(self, path, z, inside)
 
     # Plumbing

@@ -145,6 +145,8 @@ class Mesh(Queries):
         ------
         FileError
             The suffix says no format, or the file cannot be written.
+        InputError
+            There are no triangles, which ``.npz`` alone takes.
         ImportError
             The suffix needs meshio, which is not installed.
         """

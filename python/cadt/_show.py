@@ -119,8 +119,8 @@ def save(mesh: Mesh, path: Any, z: Any, inside: bool = False) -> None:
         if suffix not in known:
             raise FileError(f"{path}: meshes are written to files that end in one of: .npz, {', '.join(known)}", str(path))
     heights = None if z is None else _heights(mesh, z)
-    if inside and len(mesh._cells(inside)[0]) == 0 and mesh.n_triangles:
-        raise InputError("no triangle is inside; inside=False writes all", 0)
+    if suffix != ".npz" and len(mesh._cells(inside)[0]) == 0:
+        raise InputError("there are no triangles, or none is inside; .npz takes such a mesh", 0)
     target = Path(os.path.realpath(path))  # a link is followed: the link stays
     try:
         handle, name = tempfile.mkstemp(prefix=f".{target.stem}-", suffix=suffix, dir=target.parent)

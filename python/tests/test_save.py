@@ -80,10 +80,13 @@ def test_what_is_inside_is_written_with_its_region(tmp_path: Path) -> None:
             assert np.array_equal(f["simplices"], mesh.simplices[kept]) and np.array_equal(f["region"], mesh.region[kept])
             assert ("neighbors" in f) == ("convex_hull" in f) == (not inside)
     none = cadt.ConstrainedDelaunay(ring, domain="outer")
-    with pytest.raises(cadt.InputError, match="no triangle is inside; inside=False"):
-        none.save(tmp_path / "none.npz")
-    none.save(tmp_path / "none.npz", inside=False)
+    none.save(tmp_path / "none.npz")
+    assert np.load(tmp_path / "none.npz")["simplices"].shape == (0, 3)
     meshio = pytest.importorskip("meshio")
+    for empty in (none, cadt.Delaunay(ring[:2])):
+        with pytest.raises(cadt.InputError, match="there are no triangles, or none is inside"):
+            empty.save(tmp_path / "none.vtk")
+    none.save(tmp_path / "none.vtk", inside=False)
     mesh.save(tmp_path / "mesh.vtu")
     read = meshio.read(tmp_path / "mesh.vtu")
     assert np.array_equal(read.cells[0].data, mesh.triangles_inside)

@@ -42,7 +42,8 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
     const auto point = [&](std::size_t p) {
       return file.ring_offsets[static_cast<std::size_t>(file.polygon_offsets[p])];
     };
-    return text + (point(problem.polygon) == point(problem.polygon + 1) ? ", it has none" : ", a ring has none");
+    return text +
+           (point(problem.polygon) == point(problem.polygon + 1) ? ", it has none" : ", its first ring has none");
   }
   const bool pair = problem.first != problem.second;
   text += pair ? ", the edges from " : " at ";
@@ -53,22 +54,6 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
 
 bool crosses(PolygonStatus status) {
   return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing;
-}
-
-/// Whether the polygon can have an inside if its rings may cross; then rings of one or two points bound nothing.
-bool may_have_inside(PolygonStatus status) { return crosses(status) || status == PolygonStatus::too_few_points; }
-
-/// Whether a ring has three different points, though others have fewer.
-bool has_ring(const io::PolygonsFile& file, std::int64_t polygon) {
-  const auto p = static_cast<std::size_t>(polygon);
-  for (std::int64_t ring = file.polygon_offsets[p]; ring < file.polygon_offsets[p + 1]; ++ring) {
-    std::set<std::array<double, 2>> different;
-    for (std::int64_t i = file.ring_offsets[static_cast<std::size_t>(ring)];
-         i < file.ring_offsets[static_cast<std::size_t>(ring) + 1] && different.size() < 3; ++i)
-      different.insert({file.xy[2 * static_cast<std::size_t>(i)], file.xy[2 * static_cast<std::size_t>(i) + 1]});
-    if (different.size() == 3) return true;
-  }
-  return false;
 }
 
 /// Points and rings of polygon p, alone.
@@ -87,21 +72,6 @@ Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
   return graph;
 }
 
-/// Rings of too few points do not move to the grid if nothing crosses.
-ConstrainedTriangulation mend(const Graph& graph, PolygonStatus status, ConstraintOptions constraints,
-                              const Options& options) {
-  const InPhase phase(Phase::cooperative);
-  const Crossing rule = std::exchange(constraints.crossing, Crossing::error);
-  if (rule == Crossing::grid && status == PolygonStatus::too_few_points) {
-    try {
-      return triangulate_constrained(graph.points.view(), graph.segments, constraints, options);
-    } catch (const CrossingError&) {
-    }
-  }
-  constraints.crossing = rule;
-  return triangulate_constrained(graph.points.view(), graph.segments, constraints, options);
-}
-
 /// Appends what is inside of a polygon whose rings may cross. Its points come once more, behind all others. If there is
 /// nothing: why, as far as that does not follow from its status.
 std::optional<std::string> append_mended(RegionResult& result, const io::PolygonsFile& file,
@@ -111,7 +81,8 @@ std::optional<std::string> append_mended(RegionResult& result, const io::Polygon
   const Graph graph = graph_of(file, p);
   std::optional<ConstrainedTriangulation> mesh;
   try {
-    mesh = mend(graph, problem.status, constraints, options);
+    const InPhase phase(Phase::cooperative);
+    mesh = triangulate_constrained(graph.points.view(), graph.segments, constraints, options);
   } catch (const OptionError& e) {
     if (e.option() != "grid") throw;
     const std::string_view what = e.what();  // "ConstraintOptions::grid: ..."
@@ -120,7 +91,7 @@ std::optional<std::string> append_mended(RegionResult& result, const io::Polygon
     throw Failure(exit_file, fmt::format("{}: {}", name, explain_graph_error(graph.points.view(), graph.segments)));
   }
   if (mesh->number_inside() == 0) {
-    return constraints.crossing == Crossing::grid && crosses(problem.status) ? "; nothing is inside on the grid" : "";
+    return constraints.crossing == Crossing::grid ? "; nothing is inside on the grid" : "";
   }
   note_rounding(*mesh, fmt::format("{}, polygon {} of feature {}", name, p, file.features[p]), quiet);
   append_inside(result, *mesh, static_cast<std::int32_t>(result.points.size()));
@@ -146,11 +117,11 @@ Problems handle_problems(const PolygonsCommand& command, RegionResult& result, c
   constraints.domain = Domain::even_odd;
   std::string text;
   Problems problems;
-  bool some_cross = false, some_have_rings = false;
+  bool some_cross = false;
   for (const PolygonProblem& problem : polygons.problems()) {
     check_interrupt();
     std::string why;
-    if (constraints.crossing != Crossing::error && may_have_inside(problem.status)) {
+    if (constraints.crossing != Crossing::error && crosses(problem.status)) {
       const auto left_out = append_mended(result, file, problem, name, constraints, options, command.quiet);
       if (!left_out) {
         ++problems.mended;
@@ -159,8 +130,6 @@ Problems handle_problems(const PolygonsCommand& command, RegionResult& result, c
       why = *left_out;
     }
     some_cross = some_cross || crosses(problem.status);
-    some_have_rings =
-        some_have_rings || (problem.status == PolygonStatus::too_few_points && has_ring(file, problem.polygon));
     constexpr std::size_t most_shown = 10;
     if (++problems.left_out <= most_shown) text += "\n  " + describe(file, problem) + why;
     if (problems.left_out == most_shown + 1) text += "\n  ...";
@@ -171,13 +140,9 @@ Problems handle_problems(const PolygonsCommand& command, RegionResult& result, c
       fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
-    std::string hint;
-    if (constraints.crossing == Crossing::error && (some_cross || some_have_rings)) {
-      hint = fmt::format("--crossing exact {}{}{}; ", some_cross ? "takes rings that cross" : "",
-                         some_cross && some_have_rings ? ", and " : "",
-                         some_have_rings ? "leaves out rings of too few points beside others" : "");
-    }
-    say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text, hint));
+    const bool helps = constraints.crossing == Crossing::error && some_cross;
+    say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text,
+                    helps ? "--crossing exact takes rings that cross; " : ""));
   }
   return problems;
 }
@@ -265,7 +230,7 @@ void add_polygons(CLI::App& app, Action& chosen) {
       "attribute\n"
       "'feature' in .ply, .vtu and .geojson, as column in .ele. Polygons that have no inside, such as those that "
       "cross\n"
-      "themselves, are named and left out; with --crossing exact rings may cross or have too few points.\n\n"
+      "themselves, are named and left out; with --crossing exact rings may cross.\n\n"
       "Examples:\n"
       "  cadt polygons countries.geojson -o countries.png -o triangles.geojson\n"
       "  cadt polygons parcels.json --crossing exact -o parcels.ply\n");

@@ -18,7 +18,7 @@ namespace cadt {
 /// What has become of a polygon.
 enum class PolygonStatus : std::uint8_t {
   ok,
-  too_few_points,  ///< a ring has fewer than three different points, or the polygon has no ring
+  too_few_points,  ///< the first ring has fewer than three different points, or the polygon has no ring
   not_finite,      ///< a coordinate is not a finite number
   self_crossing,   ///< two edges of one ring cross
   ring_crossing,   ///< edges of two rings cross
@@ -31,9 +31,9 @@ enum class PolygonStatus : std::uint8_t {
 struct PolygonProblem {
   std::size_t polygon = 0;
   PolygonStatus status = PolygonStatus::ok;
-  /// Indices of ring points. Of edges that cross: where they begin; the lowest pair of them. Too few points: twice
-  /// where the ring begins, or -1 if it has no points or the polygon has no ring. Zero area: twice where the polygon
-  /// begins; not finite: twice the first such point.
+  /// Indices of ring points. Of edges that cross: where they begin; the lowest pair of them. Too few points, zero
+  /// area: twice where the polygon begins, or -1 if its first ring has no points or there is no ring. Not finite: twice
+  /// the first such point.
   std::int32_t first = 0, second = 0;
 };
 
@@ -78,15 +78,17 @@ class CADT_API PolygonsResult {
 ///
 /// Inside is what an odd number of rings goes around. The triangles are those of the constrained Delaunay triangulation
 /// of the polygon's points and edges (triangulate_constrained with Domain::even_odd). Rings may touch themselves and
-/// each other, in points and along edges, and may go along an edge twice. A polygon whose edges cross or that has
-/// another defect, such as a hole of one or two points, has no triangles and is listed in PolygonsResult::problems();
-/// the others do not suffer.
+/// each other, in points and along edges, and may go along an edge twice. Rings behind the first may have fewer than
+/// three different points: one is a vertex of the mesh, two are an edge, and none is nothing. A polygon whose edges
+/// cross or that has another defect has no triangles and is listed in PolygonsResult::problems(); the others do not
+/// suffer.
 ///
 /// All views are read only and need to live until the call returns. Small polygons are each the work of one thread of
-/// the device, those of more than 512 points of a call of their own. O(n log n) expected for each polygon of n points,
-/// O(n^2) if edges cross. Memory: 24 bytes a point for the result; on a GPU at most 300 MB more. Thread-safe. \throws
-/// InputError (offsets that descend or reach behind the points; index() is that of the offset), LimitError,
-/// OptionError, OutOfMemory, BackendUnavailable, Cancelled
+/// the device; those of more than 512 points, and those with rings of one or two, of a call of their own (ten
+/// microseconds or more on a CPU). O(n log n) expected for each polygon of n points, O(n^2) if edges cross. Memory: 24
+/// bytes a point for the result; on a GPU at most 300 MB more. Thread-safe. \throws InputError (offsets that descend or
+/// reach behind the points; index() is that of the offset), LimitError, OptionError, OutOfMemory, BackendUnavailable,
+/// Cancelled
 [[nodiscard]] CADT_API PolygonsResult triangulate_polygons(PointsView ring_points,
                                                            std::span<const std::int64_t> ring_offsets,
                                                            std::span<const std::int64_t> polygon_offsets,

@@ -27,7 +27,7 @@ class PolygonProblem(NamedTuple):
     """A polygon without triangles: its number, the reason, and the ring points where it is.
 
     The reason is "too few points", "not finite", "self-crossing", "ring crosses ring" or "zero area". Of edges that
-    cross, `first` and `second` are the points where they begin; of a ring without points, both are -1.
+    cross, `first` and `second` are the points where they begin; of a first ring without points, both are -1.
     """
 
     polygon: int
@@ -133,7 +133,8 @@ def polygons(
 
     Notes
     -----
-    Inside is what an odd number of rings goes around; their directions do not matter. A polygon with a defect has no
+    Inside is what an odd number of rings goes around; their directions do not matter. A hole of one point is a vertex of
+    the mesh, one of two points an edge. A polygon with a defect has no
     triangles and is listed in `problems`, the others do not suffer; ``GeoSeries.make_valid`` mends most of them, or
     `ConstrainedDelaunay` with its crossings. The other parameters are as for `Delaunay`.
 

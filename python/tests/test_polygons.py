@@ -48,8 +48,14 @@ def test_arrays() -> None:
 
 def test_rings_without_points() -> None:
     result = cadt.polygons(SQUARE, [0, 5, 5, 5], [0, 2, 2, 3], backend="host")
-    assert [tuple(p) for p in result.problems] == [(p, "too few points", -1, -1) for p in range(3)]
+    assert [tuple(p) for p in result.problems] == [(p, "too few points", -1, -1) for p in (1, 2)]
+    assert areas(result).tolist() == [9, 0, 0]
     assert cadt.polygons(SQUARE[:2], [0, 2]).problems[0][2:] == (0, 0)
+
+
+def test_holes_of_one_and_two_points() -> None:
+    result = cadt.polygons([*SQUARE, [1, 1], [2, 1], [2, 2]], [0, 5, 6, 8], [0, 3], backend="host")
+    assert areas(result).tolist() == [9] and sorted(set(result.triangles.ravel())) == [0, 1, 2, 3, 5, 6, 7]
 
 
 @pytest.mark.parametrize("backend", sorted({d.backend for d in cadt.devices() if d.usable}))

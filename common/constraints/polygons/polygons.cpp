@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/constraints/constraints.hpp"
-#include "common/constraints/polygons/first_edges.hpp"
+#include "common/constraints/polygons/alone.hpp"
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/counters.hpp"
@@ -64,21 +64,6 @@ void require_offsets(std::span<const std::int64_t> offsets, std::size_t most, co
                      offsets.size() - 1);
 }
 
-/// Polygons and their rings, of the caller.
-struct Polygons {
-  PointsView points;
-  std::span<const std::int64_t> rings, polygons;
-
-  [[nodiscard]] std::size_t size() const noexcept { return polygons.size() - 1; }
-  [[nodiscard]] std::size_t first_ring(std::size_t p) const { return static_cast<std::size_t>(polygons[p]); }
-  [[nodiscard]] std::size_t ring(std::size_t r) const { return static_cast<std::size_t>(rings[r]); }
-  /// Of polygons [p, end).
-  [[nodiscard]] std::size_t first_point(std::size_t p) const { return ring(first_ring(p)); }
-  [[nodiscard]] std::size_t points_of(std::size_t p, std::size_t end) const {
-    return first_point(end) - first_point(p);
-  }
-};
-
 class PolygonsCall {
  public:
   PolygonsCall(Context& ctx, const Polygons& input, PolygonsResult::Data& result)
@@ -95,7 +80,10 @@ class PolygonsCall {
     for (std::size_t first = 0, end = 0; first < count; first = end) {
       end = end_of_round(first);
       ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
-      is_large(first) ? add_alone(first) : add_round(first, end);
+      if (is_large(first))
+        add(triangulate_alone(ctx_, in_, first, alone_));
+      else
+        add_round(first, end);
     }
     result_.triangles = cut_words(std::move(result_.triangles), 3 * most_triangles(points), 3 * total());
   }
@@ -211,14 +199,23 @@ class PolygonsCall {
     launch.run<KernelId::cadt_triangulate_polygons>(input, ring_begins, polygon_rings, all, scratch_, item_words, begin,
                                                     triangles_, places, results);
     const auto found = ctx_.device.read_values(*results, polygons * CADT_POLYGON_RESULT_WORDS);
-    if (split_at_wide(first, end, found)) return;
     launch.scan(places, polygons + 1);
     const std::size_t before = direct_ ? total() : 0;
     launch.run<KernelId::cadt_pack_polygons>(triangles_, ring_begins, polygon_rings, all, places, packed_, before);
     const auto ends = ctx_.device.read_values(*places, polygons + 1);
     if (!direct_ && ends.back() != 0)
       ctx_.device.read(*packed_, 0, result_.triangles.get() + 3 * total(), 3 * std::size_t{ends.back()} * word);
+    std::vector<PolygonAlone> alone;
+    for (std::size_t p = 0; p < polygons; ++p)
+      if (is_left(first + p, found[p * CADT_POLYGON_RESULT_WORDS]))
+        alone.push_back(triangulate_alone(ctx_, in_, first + p, alone_));
+    make_room(first, ends, alone);
+    auto next = alone.begin();
     for (std::size_t p = 0; p < polygons; ++p) {
+      if (next != alone.end() && next->number == first + p) {
+        add(*next++);
+        continue;
+      }
       const std::uint32_t* words_of = &found[p * CADT_POLYGON_RESULT_WORDS];
       if (words_of[CADT_POLYGON_STATE] == CADT_POLYGON_BROKEN)
         give_up("the edges of polygon ", first + p, " were found to cross, but no two of them do");
@@ -228,20 +225,24 @@ class PolygonsCall {
     }
   }
 
-  /// Polygons with coordinates too far apart for the narrow arithmetic are done alone, those between in rounds again.
-  bool split_at_wide(std::size_t first, std::size_t end, std::span<const std::uint32_t> found) {
-    std::vector<std::size_t> wide;
-    for (std::size_t p = first; p < end; ++p)
-      if (found[(p - first) * CADT_POLYGON_RESULT_WORDS] == CADT_POLYGON_WIDE) wide.push_back(p);
-    if (wide.empty()) return false;
-    std::size_t next = first;
-    for (const std::size_t p : wide) {
-      if (next < p) add_round(next, p);
-      add_alone(p);
-      next = p + 1;
+  /// Whether a work-item leaves a small polygon to a call of its own: one with coordinates too far apart for the narrow
+  /// arithmetic, or with a hole of one or two points.
+  [[nodiscard]] bool is_left(std::size_t p, std::uint32_t state) const {
+    return state == CADT_POLYGON_WIDE || (state == CADT_POLYGON_TOO_FEW_POINTS && has_outline(in_, p));
+  }
+
+  /// Moves the triangles of the round that begins with polygon `first`, the last ones first, so that those of the
+  /// polygons `alone` have room between them. `ends`: of the triangles of each polygon of the round.
+  void make_room(std::size_t first, std::span<const std::uint32_t> ends, std::span<const PolygonAlone> alone) {
+    std::int32_t* const begin = result_.triangles.get() + 3 * total();
+    std::size_t more = 0, last = ends.back();
+    for (const PolygonAlone& polygon : alone) more += polygon.triangles.size();
+    for (auto polygon = alone.rbegin(); polygon != alone.rend(); ++polygon) {
+      const std::size_t from = ends[polygon->number - first];
+      std::copy_backward(begin + 3 * from, begin + 3 * last, begin + 3 * last + more);
+      more -= polygon->triangles.size();
+      last = from;
     }
-    if (next < end) add_round(next, end);
-    return true;
   }
 
   void add(std::size_t polygon, PolygonStatus status, std::int32_t first, std::int32_t second, std::size_t triangles) {
@@ -249,69 +250,9 @@ class PolygonsCall {
     result_.offsets.push_back(result_.offsets.back() + static_cast<std::int64_t>(triangles));
     if (status != PolygonStatus::ok) result_.problems.push_back({polygon, status, first, second});
   }
-
-  /// What can be said without a mesh.
-  bool refuse(std::size_t p) {
-    const auto report = [&](PolygonStatus status, std::int32_t at) {
-      add(p, status, at, at, 0);
-      return true;
-    };
-    for (std::size_t i = in_.first_point(p); i < in_.first_point(p + 1); ++i)
-      if (!std::isfinite(in_.points.x(i)) || !std::isfinite(in_.points.y(i)))
-        return report(PolygonStatus::not_finite, static_cast<std::int32_t>(i));
-    const auto same = [&](std::size_t i, std::size_t j) {
-      return in_.points.x(i) == in_.points.x(j) && in_.points.y(i) == in_.points.y(j);
-    };
-    for (std::size_t r = in_.first_ring(p); r < in_.first_ring(p + 1); ++r) {
-      const std::size_t begin = in_.ring(r), end = in_.ring(r + 1);
-      std::size_t second = begin, third = begin;
-      while (second < end && same(begin, second)) ++second;
-      for (third = second; third < end && (same(begin, third) || same(second, third));) ++third;
-      if (third >= end)
-        return report(PolygonStatus::too_few_points, begin == end ? -1 : static_cast<std::int32_t>(begin));
-    }
-    return false;
-  }
-
-  void add_crossed(std::size_t p, std::span<const std::int64_t> rings, const Segment& pair) {
-    const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
-    const auto begin = static_cast<std::int32_t>(in_.first_point(p));
-    add(p, ring_of(pair[0]) == ring_of(pair[1]) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing,
-        pair[0] + begin, pair[1] + begin, 0);
-  }
-
-  void add_alone(std::size_t p) {
-    if (refuse(p)) return;
-    const std::size_t begin = in_.first_point(p), count = in_.points_of(p, p + 1);
-    std::vector<std::int64_t> rings;
-    for (std::size_t r = in_.first_ring(p); r <= in_.first_ring(p + 1); ++r)
-      rings.push_back(in_.rings[r] - static_cast<std::int64_t>(begin));
-    const std::vector<Segment> segments = ring_segments(rings);
-    const PointsView points = in_.points.subview(begin, count);
-    if (const auto pair = crossing_of_first_edges(points, segments)) return add_crossed(p, rings, *pair);
-    ConstraintOptions constraints;
-    constraints.domain = Domain::even_odd;
-    Options options = ctx_.options;
-    options.keep_points = KeepPoints::no;
-    options.order = Order::canonical;
-    options.progress = nullptr;
-    const std::size_t limit = options.max_memory, taken = ctx_.memory.taken();
-    if (limit != 0) options.max_memory = limit > taken ? limit - taken : 1;
-    try {
-      const ConstrainedTriangulation mesh = triangulate_constrained(points, segments, constraints, options);
-      const std::vector<std::int32_t> inside = mesh.triangles_inside();
-      add_counters(alone_, mesh.statistics());
-      alone_.bytes_device_peak = std::max(alone_.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
-      std::int32_t* to = result_.triangles.get() + 3 * total();
-      for (const std::int32_t v : inside) *to++ = v + static_cast<std::int32_t>(begin);
-      const auto at = static_cast<std::int32_t>(begin);
-      add(p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, inside.size() / 3);
-    } catch (const CrossingError& error) {
-      add_crossed(p, rings, error.pairs().front());
-    } catch (const OutOfMemory& error) {
-      if (limit != 0) ctx_.memory.require(error.needed());  // says what all need together
-      throw;
-    }
+  void add(const PolygonAlone& polygon) {
+    std::ranges::copy(polygon.triangles, result_.triangles.get() + 3 * total());
+    add(polygon.number, polygon.status, polygon.first, polygon.second, polygon.triangles.size() / 3);
   }
 
   Context& ctx_;

@@ -12,7 +12,8 @@
 /* What becomes of a polygon. */
 enum {
   CADT_POLYGON_OK,
-  CADT_POLYGON_TOO_FEW_POINTS, /* a ring with fewer than three different points, or no ring */
+  CADT_POLYGON_TOO_FEW_POINTS, /* a ring with fewer than three different points, or no ring; of the outline, if it has
+                                  them */
   CADT_POLYGON_NOT_FINITE,
   CADT_POLYGON_SELF_CROSSING, /* two edges of one ring */
   CADT_POLYGON_RING_CROSSING, /* edges of two rings */

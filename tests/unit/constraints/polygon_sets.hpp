@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -80,14 +81,10 @@ inline Expected expected_of(const PolygonSet& set, std::size_t p) {
       return {PolygonStatus::not_finite, at, at, {}};
     }
   if (rings.size() == 1) return {PolygonStatus::too_few_points, -1, -1, {}};
-  for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
-    Ring different;
-    for (std::int64_t i = rings[r]; i < rings[r + 1]; ++i) different.push_back(point(i));
-    std::ranges::sort(different);
-    const auto same = std::ranges::unique(different);
-    different.erase(same.begin(), same.end());
-    if (different.size() >= 3) continue;
-    const auto at = different.empty() ? -1 : static_cast<std::int32_t>(rings[r]);
+  std::set<std::array<double, 2>> outline;
+  for (std::int64_t i = rings[0]; i < rings[1]; ++i) outline.insert(point(i));
+  if (outline.size() < 3) {
+    const std::int32_t at = outline.empty() ? -1 : begin;
     return {PolygonStatus::too_few_points, at, at, {}};
   }
   std::vector<std::int64_t> offsets;

@@ -208,9 +208,8 @@ TEST_P(Polygons, DefectsAreReportedOneByOne) {
   const std::vector<std::pair<std::vector<Ring>, PolygonStatus>> cases = {
       {{square}, PolygonStatus::ok},
       {{}, PolygonStatus::too_few_points},
-      {{square, {}}, PolygonStatus::too_few_points},
       {{{}, square}, PolygonStatus::too_few_points},
-      {{square, {{1, 1}, {2, 2}, {1, 1}}}, PolygonStatus::too_few_points},
+      {{{{1, 1}, {2, 2}, {1, 1}}, square}, PolygonStatus::too_few_points},
       {{{{0, 0}, {1, 0}, {0, nan}}}, PolygonStatus::not_finite},
       {{{{0, 0}, {-inf, 0}, {0, 1}}}, PolygonStatus::not_finite},
       {{{{0, 0}, {2, 2}, {2, 0}, {0, 2}}}, PolygonStatus::self_crossing},
@@ -237,6 +236,53 @@ TEST_P(Polygons, DefectsAreReportedOneByOne) {
   }
   EXPECT_EQ(result.problems().size(), problems);
   expect_equal(set);
+}
+
+/// Holes of one or two points are vertices and edges of the mesh; those without points are nothing.
+TEST_P(Polygons, HolesOfFewPoints) {
+  const Ring square = {{0, 0}, {9, 0}, {9, 9}, {0, 9}}, dot = {{3, 4}}, line = {{1, 1}, {1, 8}},
+             bow_tie = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
+  const double far = 0x1p600;
+  struct Case {
+    std::vector<Ring> rings;
+    std::size_t triangles;
+    PolygonStatus status = PolygonStatus::ok;
+  };
+  const std::vector<Case> cases = {
+      {{square, {}}, 2},
+      {{square, dot}, 4},
+      {{square, {{3, 4}, {3, 4}, {3, 4}}}, 4},
+      {{square, line}, 6},
+      {{square, {{1, 1}, {1, 8}, {1, 1}}}, 6},
+      {{square, dot, {}, line, {{5, 5}}}, 10},
+      {{square, {{9, 4}}}, 3},
+      {{square, {{9, 9}}}, 2},
+      {{square, {{9, 0}, {0, 9}}}, 2},
+      {{square, {{20, 4}}, {{11, 2}, {30, 2}}}, 2},
+      {{{{0, 0}, {far, 0}, {0, 0x1p-600}}, {{far / 4, 0x1p-602}}}, 3},
+      {{square, {{1, 1}, {10, 1}}}, 0, PolygonStatus::ring_crossing},
+      {{bow_tie, dot}, 0, PolygonStatus::self_crossing},
+      {{{{0, 0}, {1, 1}, {3, 3}}, dot}, 0, PolygonStatus::zero_area},
+      {{dot}, 0, PolygonStatus::too_few_points},
+      {{line, square}, 0, PolygonStatus::too_few_points},
+      {{star(*std::make_unique<std::mt19937_64>(9), 600, 0, 0, 5e8, 1e9), dot}, 600},
+  };
+  PolygonSet set;
+  for (int copy = 0; copy < 3; ++copy)
+    for (const Case& one : cases) {
+      set.add(one.rings);
+      if (copy != 1) set.add({square});
+    }
+  expect_equal(set);
+  const PolygonsResult result = triangulate(set);
+  std::size_t p = 0;
+  for (int copy = 0; copy < 3; ++copy)
+    for (const Case& one : cases) {
+      EXPECT_EQ(to_string(result.status()[p]), to_string(one.status)) << p;
+      EXPECT_EQ(result.triangles(p++).size(), 3 * one.triangles) << p;
+      if (copy == 1) continue;
+      EXPECT_EQ(result.triangles(p++).size(), 6U) << p;
+    }
 }
 
 /// A large polygon is a call of its own: what that counts is told, too.
@@ -358,7 +404,7 @@ std::vector<Ring> polygon_of(const std::string& json) {
   return polygon;
 }
 
-/// Polygons of the tests of mapbox/earcut, of which some have rings of one point, and some cross themselves. The area
+/// Polygons of the tests of mapbox/earcut, of which some have holes of one point, and some cross themselves. The area
 /// of all others is that of their rings.
 TEST_P(Polygons, FixturesOfEarcut) {
   const auto folder = data_folder();
@@ -366,9 +412,9 @@ TEST_P(Polygons, FixturesOfEarcut) {
   const std::map<std::string, PolygonStatus> defects = {{"bad-hole", PolygonStatus::ring_crossing},
                                                         {"empty-square", PolygonStatus::zero_area},
                                                         {"issue107", PolygonStatus::too_few_points},
-                                                        {"issue83", PolygonStatus::too_few_points},
-                                                        {"water-huge", PolygonStatus::too_few_points},
-                                                        {"water-huge2", PolygonStatus::too_few_points},
+                                                        {"issue83", PolygonStatus::zero_area},
+                                                        {"water-huge", PolygonStatus::self_crossing},
+                                                        {"water-huge2", PolygonStatus::self_crossing},
                                                         {"simplified-us-border", PolygonStatus::self_crossing},
                                                         {"water", PolygonStatus::self_crossing}};
   PolygonSet set;

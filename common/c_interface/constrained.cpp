@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments that must be edges, and polygons.
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "common/c_interface/convert.hpp"
 #include "common/constraints/constraints.hpp"
@@ -9,6 +12,9 @@ using namespace cadt::c_interface;
 
 struct cadt_constrained {
   cadt::ConstrainedTriangulation mesh;
+};
+struct cadt_crossings {
+  std::vector<std::array<std::int32_t, 2>> pairs;
 };
 struct cadt_polygon_triangles {
   cadt::PolygonsResult result;
@@ -290,16 +296,38 @@ cadt_status cadt_constrained_verify(const cadt_constrained* mesh, const cadt_poi
   });
 }
 
-cadt_status cadt_find_crossings(const cadt_points* points, const int32_t* segments, size_t segment_count,
-                                uint32_t threads, int32_t* pairs, size_t capacity, size_t* count) {
+cadt_status cadt_constrained_values_at_crossings(const cadt_constrained* mesh, const cadt_points* points,
+                                                 const double* values, size_t value_count, size_t columns,
+                                                 double* result, size_t capacity, size_t* count) {
   return guarded([&] {
-    required(count, "count");
+    const auto& m = mesh_of(mesh);
     const cadt::PointsView view = points_of(points);
-    cadt::Options options;
-    options.threads = threads;
-    const auto found = cadt::find_crossings(view, segments_of(segments, segment_count), options);
-    if (has_room(pairs, capacity, 2 * found.size(), count) && !found.empty())
-      std::memcpy(pairs, found.data(), found.size() * sizeof found[0]);
+    if (value_count != 0) require(values, "values");
+    const auto all = cadt::values_at_crossings(view, {values, value_count}, columns, m);
+    if (has_room(result, capacity, all.size(), count)) std::ranges::copy(all, result);
+  });
+}
+
+cadt_status cadt_find_crossings(const cadt_points* points, const int32_t* segments, size_t segment_count,
+                                const cadt_options* options, cadt_crossings** crossings) {
+  return guarded([&] {
+    auto& result = required(crossings, "crossings");
+    const cadt::PointsView view = points_of(points);
+    const auto between = segments_of(segments, segment_count);
+    auto found = std::make_unique<cadt_crossings>();
+    found->pairs = cadt::find_crossings(view, between, CallOptions(options).begin_call());
+    result = found.release();
+  });
+}
+
+void cadt_crossings_free(cadt_crossings* crossings) { delete crossings; }
+
+cadt_status cadt_crossings_pairs(const cadt_crossings* crossings, const int32_t** pairs, size_t* count) {
+  return guarded([&] {
+    const auto& found = required(crossings, "crossings").pairs;
+    auto& list = required(pairs, "pairs");
+    required(count, "count") = found.size();
+    list = found.empty() ? nullptr : found.front().data();
   });
 }
 

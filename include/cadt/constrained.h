@@ -119,10 +119,23 @@ CADT_API cadt_status cadt_constrained_verify(const cadt_constrained* mesh, const
                                              const int32_t* segments, size_t segment_count,
                                              const cadt_constraint_options* constraints, cadt_report** report);
 
-/* All pairs of segments that cross, the lower index first, ascending: *count is the number of words, two a pair.
- * `threads`: 0 for all cores. CADT_LIMIT_ERROR if points and crossings are more than 32-bit indices allow. */
+/* `columns` values of each input point, and behind them those at the vertices made for crossings: linear along the
+ * first of their two segments. `values` and `result`: a row a point; *count is the number of all, input points x
+ * columns + crossings x columns. CADT_INPUT_ERROR if there are not `columns` values for each of the points. */
+CADT_API cadt_status cadt_constrained_values_at_crossings(const cadt_constrained* mesh, const cadt_points* points,
+                                                          const double* values, size_t value_count, size_t columns,
+                                                          double* result, size_t capacity, size_t* count);
+
+/* Pairs of segments that cross, for cadt_crossings_free. */
+typedef struct cadt_crossings cadt_crossings;
+
+/* Finds all of them, on the host. Of `options`, which may be NULL, `threads`, `cancelled` and `progress` count.
+ * CADT_LIMIT_ERROR if points and crossings are more than 32-bit indices allow. */
 CADT_API cadt_status cadt_find_crossings(const cadt_points* points, const int32_t* segments, size_t segment_count,
-                                         uint32_t threads, int32_t* pairs, size_t capacity, size_t* count);
+                                         const cadt_options* options, cadt_crossings** crossings);
+CADT_API void cadt_crossings_free(cadt_crossings* crossings);
+/* Two words each, the lower index first; ascending. They live as long as the handle. */
+CADT_API cadt_status cadt_crossings_pairs(const cadt_crossings* crossings, const int32_t** pairs, size_t* count);
 
 /* Prepares a constrained mesh for queries; `points`: those that it was made of, which must live as long as the handle.
  * Values are given for the added points as well. Nearest vertices and what else takes a Delaunay mesh is

@@ -77,8 +77,14 @@ static void test_kept_points(const cadt_points* points, const int32_t* segments,
   cadt_triangulation_free(triangles);
 }
 
+static int32_t at_once(void* user) {
+  (void)user;
+  return 1;
+}
+
 static void test_crossings(void) {
   const double xy[] = {0, 0, 2, 2, 0, 2, 2, 0}, where[] = {1, 0.5}, heights[] = {0, 0, 0, 0, 1};
+  const double slopes[] = {1, 10, 3, 30, 7, 70, 9, 90};
   const int32_t segments[] = {0, 1, 2, 3, 1, 1};
   const cadt_points points = points_of(xy, 4), asked = points_of(where, 1);
   cadt_constraint_options how = {0};
@@ -86,8 +92,9 @@ static void test_crossings(void) {
   cadt_queries* queries = NULL;
   const double* added = NULL;
   const int32_t *parents = NULL, *list = NULL;
-  int32_t pairs[2] = {7, 7};
-  double result = 0;
+  cadt_crossings* crossings = NULL;
+  cadt_options options;
+  double result = 0, rows[10] = {0};
   size_t count = 0;
 
   how.size = sizeof how;
@@ -95,16 +102,35 @@ static void test_crossings(void) {
   CHECK(mesh == NULL && last_error().index == 0 && last_error().needed == 1);
   CHECK(strcmp(cadt_status_name(CADT_SEGMENTS_CROSS), "CADT_SEGMENTS_CROSS") == 0);
   CHECK(strcmp(cadt_status_name(CADT_NOT_DELAUNAY), "CADT_NOT_DELAUNAY") == 0);
-  CHECK_OK(cadt_find_crossings(&points, segments, 3, 1, NULL, 0, &count));
-  CHECK(count == 2);
-  CHECK_STATUS(CADT_BUFFER_TOO_SMALL, cadt_find_crossings(&points, segments, 3, 1, pairs, 1, &count));
-  CHECK_OK(cadt_find_crossings(&points, segments, 3, 1, pairs, 2, &count));
-  CHECK(pairs[0] == 0 && pairs[1] == 1);
+  CHECK_OK(cadt_find_crossings(&points, segments, 3, NULL, &crossings));
+  CHECK_OK(cadt_crossings_pairs(crossings, &list, &count));
+  CHECK(count == 1 && list[0] == 0 && list[1] == 1);
+  CHECK_NULL(cadt_crossings_pairs(crossings, NULL, &count), "pairs");
+  CHECK_NULL(cadt_crossings_pairs(crossings, &list, NULL), "count");
+  CHECK_NULL(cadt_crossings_pairs(NULL, &list, &count), "crossings");
+  cadt_crossings_free(crossings);
+  cadt_crossings_free(NULL);
+  CHECK_OK(cadt_find_crossings(&points, segments, 1, NULL, &crossings));
+  CHECK_OK(cadt_crossings_pairs(crossings, &list, &count));
+  CHECK(count == 0);
+  cadt_crossings_free(crossings);
+  crossings = NULL;
+  CHECK_OK(cadt_options_init(&options, sizeof options));
+  options.cancelled = at_once;
+  CHECK_STATUS(CADT_CANCELLED, cadt_find_crossings(&points, segments, 3, &options, &crossings));
+  CHECK(crossings == NULL);
 
   how.crossing = CADT_CROSSING_EXACT;
   CHECK_OK(cadt_triangulate_constrained(&points, segments, 3, &how, NULL, &mesh));
   CHECK_OK(cadt_constrained_added_points(mesh, &added, &parents, &count));
   CHECK(count == 1 && added[0] == 1 && added[1] == 1 && parents[0] == 0 && parents[1] == 1);
+  CHECK_STATUS(CADT_BUFFER_TOO_SMALL, cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 2, rows, 9, &count));
+  CHECK(count == 10);
+  CHECK_OK(cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 2, rows, 10, &count));
+  CHECK(count == 10 && rows[0] == 1 && rows[7] == 90 && rows[8] == 2 && rows[9] == 20);
+  CHECK_STATUS(CADT_INPUT_ERROR, cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 1, rows, 10, &count));
+  CHECK_NULL(cadt_constrained_values_at_crossings(mesh, &points, NULL, 8, 2, rows, 10, &count), "values");
+  CHECK_NULL(cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 2, rows, 10, NULL), "count");
   CHECK_OK(cadt_constrained_degenerate_segments(mesh, &list, &count));
   CHECK(count == 1 && list[0] == 2);
   CHECK_OK(cadt_queries_open_constrained(&points, mesh, NULL, &queries));
@@ -205,7 +231,7 @@ static void test_nothing(const cadt_constrained* mesh) {
   CHECK_NULL(cadt_constrained_rounded_valid(mesh, NULL), "valid");
   CHECK_NULL(cadt_constrained_hash(mesh, NULL, NULL), "high");
   CHECK_NULL(cadt_constrained_verify(mesh, &points, rings, m, NULL, NULL), "report");
-  CHECK_NULL(cadt_find_crossings(&points, rings, m, 1, NULL, 0, NULL), "count");
+  CHECK_NULL(cadt_find_crossings(&points, rings, m, NULL, NULL), "crossings");
   CHECK_NULL(cadt_queries_open_constrained(&points, mesh, NULL, NULL), "queries");
   CHECK_NULL(cadt_queries_open_constrained(NULL, mesh, NULL, (cadt_queries**)&other), "points");
   cadt_constrained_free(NULL);

@@ -140,10 +140,12 @@ bool has_segments(const InputOptions& input, const SegmentOptions& options) {
 
 ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph) {
   ConstraintOptions result;
-  result.holes = graph.holes;
-  result.regions = graph.regions;
   for (const auto& [name, domain] : domains) {
     if (options.domain == name) result.domain = domain;
+  }
+  if (result.domain == Domain::seeds) {
+    result.holes = graph.holes;
+    result.regions = graph.regions;
   }
   if (options.crossing == "exact") {
     result.crossing = Crossing::exact;

@@ -31,13 +31,18 @@ struct PolygonsCommand {
   bool strict = false, quiet = false;
 };
 
+/// "polygon 1 of feature 3": its number among those of its feature.
+std::string name_of(const io::PolygonsFile& file, std::size_t polygon) {
+  const auto first = std::ranges::lower_bound(file.features, file.features[polygon]) - file.features.begin();
+  return fmt::format("polygon {} of feature {}", polygon - static_cast<std::size_t>(first), file.features[polygon]);
+}
+
 std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem) {
   const auto place = [&](std::int32_t v) {
     const auto at = 2 * static_cast<std::size_t>(v);
     return fmt::format("({}, {})", file.xy[at], file.xy[at + 1]);
   };
-  std::string text = fmt::format("polygon {} of feature {}: {}", problem.polygon, file.features[problem.polygon],
-                                 to_string(problem.status));
+  std::string text = fmt::format("{}: {}", name_of(file, problem.polygon), to_string(problem.status));
   if (problem.first < 0) {
     const auto point = [&](std::size_t p) {
       return file.ring_offsets[static_cast<std::size_t>(file.polygon_offsets[p])];
@@ -93,7 +98,7 @@ std::optional<std::string> append_mended(RegionResult& result, const io::Polygon
   if (mesh->number_inside() == 0) {
     return constraints.crossing == Crossing::grid ? "; nothing is inside on the grid" : "";
   }
-  note_rounding(*mesh, fmt::format("{}, polygon {} of feature {}", name, p, file.features[p]), quiet);
+  note_rounding(*mesh, fmt::format("{}, {}", name, name_of(file, p)), quiet);
   append_inside(result, *mesh, static_cast<std::int32_t>(result.points.size()));
   result.region.resize(result.triangles.size() / 3);
   std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh->number_inside()), result.region.end(),
@@ -203,7 +208,8 @@ int run(const PolygonsCommand& command) {
   if (problems.mended != 0)
     summary += fmt::format("mended      {} polygon{} in the output twice\n", problems.mended,
                            problems.mended == 1 ? ", its points are" : "s, their points are");
-  if (problems.left_out != 0) summary += fmt::format("no inside   {} polygons\n", problems.left_out);
+  if (problems.left_out != 0)
+    summary += fmt::format("no inside   {} polygon{}\n", problems.left_out, problems.left_out == 1 ? "" : "s");
   if (file.other_geometries != 0) summary += fmt::format("left out    {} points and lines\n", file.other_geometries);
   print_summary(summary, outputs.empty(), command.quiet);
   return exit_done;

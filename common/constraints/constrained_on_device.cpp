@@ -91,7 +91,7 @@ DeviceMesh constrain(const State& state, const DevicePoints& points, SegmentJob 
 DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
                                                           const ConstraintOptions& constraints) {
   require_segments(segments.size / 2);
-  require_constants(constraints);
+  require_valid(constraints);
   require_legal_edges(state_->options);
   if (segments.size % 2 != 0)
     throw InputError("an array of segments has two words each, this one has " + std::to_string(segments.size),

@@ -59,7 +59,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
                                       const ConstraintOptions& constraints) {
   require_size(points.size());
   require_segments(segments.size());
-  require_constants(constraints);
+  require_valid(constraints);
   require_legal_edges(state->options);
   auto data = std::make_shared<Data>();
   SegmentJob job;
@@ -126,13 +126,16 @@ void require_segments(std::size_t count) {
                      most);
 }
 
-void require_constants(const ConstraintOptions& options) {
+void require_valid(const ConstraintOptions& options) {
   const auto require = [](const char* name, int number, int last) {
     if (number < 0 || number > last)
       throw OptionError(name, "there is no constant of the number " + std::to_string(number), "ConstraintOptions::");
   };
   require("crossing", static_cast<int>(options.crossing), static_cast<int>(Crossing::grid));
   require("domain", static_cast<int>(options.domain), static_cast<int>(Domain::seeds));
+  if (options.domain == Domain::seeds || (options.holes.empty() && options.regions.empty())) return;
+  throw OptionError(options.holes.empty() ? "regions" : "holes", "these are for Domain::seeds, which is not the domain",
+                    "ConstraintOptions::");
 }
 
 void require_legal_edges(const Options& options) {

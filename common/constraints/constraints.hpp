@@ -56,8 +56,8 @@ struct SegmentResults {
 
 /// \throws LimitError
 void require_segments(std::size_t count);
-/// \throws OptionError for a number that is no constant
-void require_constants(const ConstraintOptions& options);
+/// \throws OptionError for a number that is no constant, or for holes and regions that the domain has no use for
+void require_valid(const ConstraintOptions& options);
 /// \throws OptionError with Stabilize::paper, which leaves edges that are not legal
 void require_legal_edges(const Options& options);
 

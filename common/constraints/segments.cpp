@@ -12,11 +12,13 @@ void require_offsets(std::span<const std::int64_t> offsets, std::span<const std:
   constexpr std::int64_t limit = std::numeric_limits<std::int32_t>::max();
   const std::int64_t end = vertices.empty() ? limit : static_cast<std::int64_t>(vertices.size());
   for (std::size_t i = 0; i < offsets.size(); ++i) {
-    const std::int64_t before = i == 0 ? 0 : offsets[i - 1];
-    if (offsets[i] < before || offsets[i] > end)
-      throw InputError("offset " + std::to_string(i) + " is " + std::to_string(offsets[i]) + ", not from " +
-                           std::to_string(before) + " to " + std::to_string(end),
-                       i);
+    const std::string name = "offset " + std::to_string(i) + " is " + std::to_string(offsets[i]);
+    if (i == 0 && offsets[0] < 0) throw InputError(name + ": it must not be below 0", 0);
+    if (i > 0 && offsets[i] < offsets[i - 1])
+      throw InputError(name + ", below the one before: they must not descend", i);
+    if (offsets[i] > end)
+      throw InputError(
+          name + ", more than " + std::to_string(end) + (vertices.empty() ? "" : ", the number of vertices"), i);
   }
 }
 

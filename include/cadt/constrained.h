@@ -31,7 +31,7 @@ typedef struct cadt_constraint_options {
   int32_t crossing;    /* CADT_CROSSING_... */
   int32_t domain;      /* CADT_DOMAIN_... */
   double grid;         /* with CADT_CROSSING_GRID: the width of its cells, above 0 */
-  const double* holes; /* with CADT_DOMAIN_SEEDS: x0 y0 x1 y1 ... */
+  const double* holes; /* with CADT_DOMAIN_SEEDS: x0 y0 x1 y1 ...; else none, as regions: CADT_OPTION_ERROR */
   size_t hole_count;
   const cadt_region* regions; /* with CADT_DOMAIN_SEEDS */
   size_t region_count;

@@ -27,8 +27,9 @@ using Segment = std::array<std::int32_t, 2>;
 /// \throws InputError if the offsets do not ascend or reach behind the list
 [[nodiscard]] CADT_API std::vector<Segment> polyline_segments(std::span<const std::int64_t> offsets,
                                                               std::span<const std::int32_t> vertices = {});
-/// The same for rings: the last point of each is joined with the first one. A ring that repeats its first point at its
-/// end gets a segment of zero length there, which is dropped like any other if the points are equal. O(n).
+/// The same for rings: the last point of each is joined with the first one, and one of a single point has no segment. A
+/// ring that repeats its first point at its end gets a segment of zero length there, which is dropped like any other if
+/// the points are equal. O(n).
 [[nodiscard]] CADT_API std::vector<Segment> ring_segments(std::span<const std::int64_t> offsets,
                                                           std::span<const std::int32_t> vertices = {});
 
@@ -47,7 +48,8 @@ enum class Domain {
   even_odd,  ///< those from which one crosses an odd number of segments to the outside; a segment that is given twice
              ///< counts twice
   nonzero,   ///< those with a winding number other than 0: segments that run upwards count against those downwards
-  layers,    ///< those at an odd depth: the fewest segments to be crossed to the outside; dangling segments are no harm
+  layers,    ///< those at an odd depth: the fewest segments to be crossed to the outside, several along one edge being
+             ///< one; dangling segments are no harm
   seeds      ///< those that no hole reaches: holes spread from their points, and from outside of the hull, up to the
              ///< next segment, as Triangle's do. Crossings count where they are exactly
 };
@@ -65,8 +67,8 @@ struct ConstraintOptions {
   /// more, so that its multiples are doubles. Else OptionError.
   double grid = 0;
   Domain domain = Domain::hull;
-  std::vector<std::array<double, 2>> holes = {};  ///< with Domain::seeds
-  std::vector<Region> regions = {};               ///< with Domain::seeds: their attributes go to region_attribute()
+  std::vector<std::array<double, 2>> holes = {};  ///< with Domain::seeds; else OptionError
+  std::vector<Region> regions = {};               ///< the same: their attributes go to region_attribute()
 };
 
 /// Segments that cross, with Crossing::error: repair them, or take Crossing::exact or Crossing::grid.

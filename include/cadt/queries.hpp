@@ -168,8 +168,8 @@ class CADT_API MeshQueries {
   [[nodiscard]] Options& options() noexcept;
 
   /// The triangle that contains each query (hull and edges included), the lowest if there are several; -1 outside.
-  /// O(log n) each, and a walk of a few triangles. \throws InputError for a query that is NaN or infinite, with its
-  /// index
+  /// O(log n) each, and a walk of a few triangles, which is long between two far rows of points, through their fan of
+  /// triangles. \throws InputError for a query that is NaN or infinite, with its index
   [[nodiscard]] std::vector<std::int32_t> locate(PointsView queries);
   [[nodiscard]] Located locate_barycentric(PointsView queries);
   /// Whether each query lies in the convex hull, its boundary included: 1 or 0.

@@ -42,7 +42,8 @@ class ConstrainedDelaunay(DomainMesh):
         The two points of each. They may repeat, overlap, lie on the hull and end anywhere; points on them divide them.
     polylines, rings : array_like of int, shape (k + 1,), or a pair of arrays, optional
         Offsets as in GeoArrow: polyline i has the points ``offsets[i]`` to ``offsets[i + 1] - 1``. A pair
-        ``(offsets, vertices)``: offsets count in this list of points. The last point of a ring is joined with its first.
+        ``(offsets, vertices)``: offsets count in this list of points. The last point of a ring is joined with its first;
+        one of a single point has no segment.
     crossing : {"error", "exact"} or ("grid", width)
         What becomes of segments that cross. Error: `CrossingError` with all pairs. Exact: crossings become vertices
         (`added_points`), and all decisions are made with their exact places. Grid: all points move to the nearest

@@ -30,6 +30,10 @@ def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> 
                 hint = "; pass points[:, :2], and heights as values, or cadt.scipy.Delaunay makes tetrahedra (with Qhull)"
             elif a.shape[0] == 2:
                 hint = "; pass points.T"
+        elif a.ndim == 2 and a.shape[1] == 3:
+            hint = "; pass the first two columns"
+        elif a.ndim == 1 and a.size % 2 == 0:
+            hint = "; np.reshape(..., (-1, 2)) makes rows of x and y in turn"
         raise InputError(f"{what} must have shape {columns}, not {a.shape}{hint}", 0)
     if a.dtype not in _FLOATS or not a.dtype.isnative:
         a = to_float(a, what)

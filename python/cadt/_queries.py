@@ -48,7 +48,8 @@ class Queries:
     def find_simplex(self, xi: Any) -> Any:
         """The triangle that contains each query: int32, -1 outside.
 
-        Exact. Hull and edges belong to the mesh; on an edge or vertex it is the lowest triangle. O(log n) each.
+        Exact. Hull and edges belong to the mesh; on an edge or vertex it is the lowest triangle. O(log n) each, and a
+        walk of a few triangles, which is long between two far rows of points.
 
         Parameters
         ----------

@@ -57,11 +57,13 @@ def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
     vertices: Any = None
     if isinstance(lines, tuple) and len(lines) == 2 and (isinstance(lines[0], (list, tuple)) or np.ndim(lines[0])):
         lines, vertices = lines
+    if isinstance(lines, (list, np.ndarray)) and len(lines) == 0:
+        return np.empty((0, 2), dtype=np.int32)
     offsets = as_offsets(lines, what, "offsets, integers of shape (k + 1,), or a tuple (offsets, vertices)")
     if vertices is None:
         if offsets[-1] > n:
             raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
-        return make(offsets, np.empty(0, dtype=np.int32))
+        return _made(make, offsets, np.empty(0, dtype=np.int32), what)
     form = "integers of one dimension"
     v = as_array(vertices, f"the vertices of {what}", form)
     if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
@@ -70,7 +72,15 @@ def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
     if wrong.any():
         first = int(np.argmax(wrong))
         raise InputError(f"vertex {first} of {what} is no point: {v[first]}", first)
-    return make(offsets, contiguous(v, np.int32))
+    return _made(make, offsets, contiguous(v, np.int32), what)
+
+
+def _made(make: Any, offsets: np.ndarray, vertices: np.ndarray, what: str) -> np.ndarray:
+    try:
+        segments: np.ndarray = make(offsets, vertices)
+    except InputError as e:
+        raise InputError(f"{what}: {e}", e.index) from None
+    return segments
 
 
 def constraints_of(

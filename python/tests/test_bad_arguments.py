@@ -136,6 +136,12 @@ def test_the_way_out_of_a_mask_and_of_three_columns() -> None:
             call(P[:50].T)
         with pytest.raises(InputError, match=r"not \(50, 4\); cadt.scipy.Delaunay takes more dimensions"):
             call(np.zeros((50, 4)))
+        with pytest.raises(InputError, match=r"not \(50,\); np.reshape\(..., \(-1, 2\)\) makes rows of x and y in turn"):
+            call(np.zeros(50))
+        with pytest.raises(InputError, match=r"not \(51,\)$"):
+            call(np.zeros(51))
+    with pytest.raises(InputError, match=r"ring points must have shape \(n, 2\), not \(50, 3\); pass the first two columns"):
+        cadt.polygons(np.zeros((50, 3)), [0, 50])
     with pytest.raises(InputError, match=r"; of colours make numbers: labels\[..., :3\] @ \[65536, 256, 1\]"):
         cadt.label_segments(np.zeros((4, 5, 3), np.uint8))
     colours = np.zeros((4, 5, 4), np.uint8)

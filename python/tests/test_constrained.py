@@ -189,6 +189,14 @@ def test_bad_input() -> None:
         cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="seeds", holes=[1, 1])
 
 
+def test_no_lines() -> None:
+    plain = cadt.ConstrainedDelaunay(SQUARES)
+    for none in ([], np.empty(0, dtype=int), [0]):
+        mesh = cadt.ConstrainedDelaunay(SQUARES, [], polylines=none, rings=none)
+        assert len(mesh.segments) == 0 and mesh.hash == plain.hash
+    assert cadt.ConstrainedDelaunay(SQUARES, rings=[0, 1, 1, 4]).segments.tolist() == [[1, 2], [2, 3], [3, 1]]
+
+
 @pytest.mark.parametrize(
     "given,says",
     [
@@ -196,6 +204,9 @@ def test_bad_input() -> None:
         ({"rings": [[0, 4], [0, 1]]}, r"rings must be offsets, .* or a tuple .*, not int64 of \(2, 2\)"),
         ({"polylines": ([[0, 4]], [0, 1, 2, 3])}, r"polylines must be offsets, .* not int64 of \(1, 2\)"),
         ({"polylines": ([[0], [1, 2]], [0, 1])}, r"polylines must be offsets, .* or a tuple"),
+        ({"polylines": [0, 3, 2]}, "polylines: offset 2 is 2, below the one before: they must not descend"),
+        ({"rings": [-1, 3]}, "rings: offset 0 is -1: it must not be below 0"),
+        ({"rings": ([0, 5], [0, 1, 2])}, "rings: offset 1 is 5, more than 3, the number of vertices"),
         ({"polylines": ([0, 2], [0, [1]])}, "the vertices of polylines must be integers of one dimension: "),
         ({"segments": [[0, 1], [2]]}, r"segments must be integers of shape \(m, 2\): "),
         ({"holes": [["a", 1]]}, r"holes must be numbers of shape \(k, 2\), not <U21 of \(1, 2\)"),

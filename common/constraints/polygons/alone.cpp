@@ -18,13 +18,16 @@ PolygonAlone with_problem(std::size_t p, PolygonStatus status, std::int32_t firs
   return {p, status, first, second, {}};
 }
 
-/// `rings` and `pair` count from the polygon's first point, `begin`.
+/// `rings` and the ends of `segments` count from the polygon's first point, `begin`; `pair`: two of the segments.
 PolygonAlone with_crossing(std::size_t p, std::int32_t begin, std::span<const std::int64_t> rings,
-                           const Segment& pair) {
-  const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
-  const bool one = ring_of(pair[0]) == ring_of(pair[1]);
-  return with_problem(p, one ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing, pair[0] + begin,
-                      pair[1] + begin);
+                           std::span<const Segment> segments, const Segment& pair) {
+  // A ring of one point has no segment: they are not numbered as the points are.
+  const auto start_of = [&](std::int32_t segment) { return segments[static_cast<std::size_t>(segment)][0]; };
+  const std::int32_t first = start_of(pair[0]), second = start_of(pair[1]);
+  const auto ring_of = [&](std::int32_t point) { return std::ranges::upper_bound(rings, std::int64_t{point}); };
+  const bool one = ring_of(first) == ring_of(second);
+  return with_problem(p, one ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing, first + begin,
+                      second + begin);
 }
 
 }  // namespace
@@ -61,7 +64,7 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
     return with_problem(p, PolygonStatus::too_few_points, where, where);
   }
   const std::vector<Segment> segments = ring_segments(rings);
-  if (const auto pair = crossing_of_first_edges(points, segments)) return with_crossing(p, at, rings, *pair);
+  if (const auto pair = crossing_of_first_edges(points, segments)) return with_crossing(p, at, rings, segments, *pair);
   ConstraintOptions constraints;
   constraints.domain = Domain::even_odd;
   Options options = ctx.options;
@@ -78,7 +81,7 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
     statistics.bytes_device_peak = std::max(statistics.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
     return {p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, std::move(inside)};
   } catch (const CrossingError& error) {
-    return with_crossing(p, at, rings, error.pairs().front());
+    return with_crossing(p, at, rings, segments, error.pairs().front());
   } catch (const OutOfMemory& error) {
     if (limit != 0) ctx.memory.require(error.needed());  // says what all need together
     throw;

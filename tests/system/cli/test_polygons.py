@@ -63,8 +63,8 @@ class Polygons(CliTest):
 
     def test_those_that_cross_themselves_are_named(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(HOLE), polygon(BOW_TIE[::-1])))
-        named = ["a.geojson: 2 of 4 polygons have no inside", "polygon 1 of feature 1: self-crossing, the edges from (",
-                 "polygon 3 of feature 3: self-crossing"]
+        named = ["a.geojson: 2 of 4 polygons have no inside", "polygon 0 of feature 1: self-crossing, the edges from (",
+                 "polygon 0 of feature 3: self-crossing"]
         self.fails(3, "polygons", "a.geojson", "-o", "m.off", "--strict", says=named + ["Nothing was written"])
         self.assertEqual(self.names(), ["a.geojson"])
         err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
@@ -72,6 +72,13 @@ class Polygons(CliTest):
             self.assertIn(text, err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 1)
         self.assertEqual(self.cadt("polygons", "a.geojson", "-o", "m.off", "-q").err, "")
+
+    def test_polygons_count_within_their_feature(self):
+        parts = {"type": "MultiPolygon", "coordinates": [[SQUARE], [HOLE], [BOW_TIE]]}
+        self.write("a.geojson", geojson(polygon(SQUARE), parts))
+        err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
+        self.assertIn("polygon 2 of feature 1: self-crossing", err)
+        self.assertIn("no inside   1 polygon\n", err)
 
     def test_crossings_can_become_vertices(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE)))
@@ -83,7 +90,7 @@ class Polygons(CliTest):
         flat = [[0, 0], [1, 1], [2, 2], [0, 0]]
         self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, [[1, 1]])))
         err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
-        self.assertIn("polygon 2 of feature 2: zero area at (0, 0)", err)
+        self.assertIn("polygon 0 of feature 2: zero area at (0, 0)", err)
         self.assertIn("They are left out; --strict makes this an error.", err)
         self.assertNotIn("polygon 3", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8 + 16)
@@ -114,7 +121,7 @@ class Polygons(CliTest):
         far = [[1e20 * x, 1e20 * y] for x, y in BOW_TIE]
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(far), polygon(BOW_TIE)))
         err = self.cadt("polygons", "a.geojson", "--crossing", "grid=0.5", "-o", "m.off").err
-        for text in ("1 of 3 polygons has no inside", "polygon 1 of feature 1: self-crossing", "; --crossing grid: coordinates are 2^52"):
+        for text in ("1 of 3 polygons has no inside", "polygon 0 of feature 1: self-crossing", "; --crossing grid: coordinates are 2^52"):
             self.assertIn(text, err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8)
         self.fails(3, "polygons", "a.geojson", "--crossing", "grid=0.5", "-o", "n.off", "--strict", says="coordinates are 2^52")
@@ -124,7 +131,7 @@ class Polygons(CliTest):
     def test_those_without_points_are_named(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(), polygon([]), polygon(SQUARE, []), polygon([], SQUARE)))
         named = ["a.geojson: 3 of 5 polygons have no inside"] + [
-            f"polygon {p} of feature {p}: too few points, {who} has none" for p, who in ((1, "it"), (2, "it"), (4, "its first ring"))]
+            f"polygon 0 of feature {p}: too few points, {who} has none" for p, who in ((1, "it"), (2, "it"), (4, "its first ring"))]
         self.fails(3, "polygons", "a.geojson", "-o", "m.off", "--strict", says=named)
         err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
         for text in named:

@@ -111,6 +111,26 @@ TEST_P(SpecialCases, ConstantsThatThereAreNot) {
   }
 }
 
+TEST_P(SpecialCases, HolesAndRegionsWithoutSeeds) {
+  const Points xy = uniform_points(20, 4);
+  const std::vector<Segment> segments = {{0, 1}};
+  const auto refused = [&](const ConstraintOptions& options) -> std::string {
+    try {
+      (void)triangulate_constrained(std::span<const double>(xy), segments, options, GetParam().options());
+    } catch (const OptionError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const Domain domain : {Domain::hull, Domain::outer, Domain::even_odd, Domain::nonzero, Domain::layers}) {
+    EXPECT_EQ(refused({.domain = domain, .holes = {{0, 0}}}),
+              "ConstraintOptions::holes: these are for Domain::seeds, which is not the domain");
+    EXPECT_EQ(refused({.domain = domain, .regions = {{0, 0, 1}}}),
+              "ConstraintOptions::regions: these are for Domain::seeds, which is not the domain");
+  }
+  EXPECT_EQ(refused({.domain = Domain::seeds, .holes = {{0, 0}}, .regions = {{0, 0, 1}}}), "");
+}
+
 TEST_P(SpecialCases, WithoutSegmentsTheMeshIsThatOfTriangulate) {
   const std::vector<Points> sets = {square, uniform_points(500), grid_points(9, 9), {0, 0, 1, 1, 2, 2}, {3, 3}};
   for (const Points& xy : sets) {

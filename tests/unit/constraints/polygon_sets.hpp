@@ -94,18 +94,20 @@ inline Expected expected_of(const PolygonSet& set, std::size_t p) {
   options.threads = 1;
   ConstraintOptions constraints;
   constraints.domain = Domain::even_odd;
+  const std::vector<Segment> segments = ring_segments(offsets);
   try {
     const std::span all =
         std::span(set.points)
             .subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(rings.back() - rings.front()));
     std::vector<std::int32_t> triangles =
-        triangulate_constrained(all, ring_segments(offsets), constraints, options).triangles_inside();
+        triangulate_constrained(all, segments, constraints, options).triangles_inside();
     for (std::int32_t& v : triangles) v += begin;
     if (triangles.empty()) return {PolygonStatus::zero_area, begin, begin, {}};
     return {PolygonStatus::ok, 0, 0, as_set(set, triangles)};
   } catch (const CrossingError& error) {
-    const auto [i, j] = error.pairs().front();
-    const auto ring = [&](std::int32_t edge) { return std::ranges::upper_bound(offsets, std::int64_t{edge}); };
+    const auto [k, l] = error.pairs().front();
+    const std::int32_t i = segments[static_cast<std::size_t>(k)][0], j = segments[static_cast<std::size_t>(l)][0];
+    const auto ring = [&](std::int32_t point) { return std::ranges::upper_bound(offsets, std::int64_t{point}); };
     return {ring(i) == ring(j) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing, begin + i, begin + j, {}};
   }
 }

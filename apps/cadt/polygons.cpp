@@ -15,10 +15,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
-#include <set>
 
 namespace cadt::cli {
 namespace {
@@ -33,8 +31,9 @@ struct PolygonsCommand {
 
 /// "polygon 1 of feature 3": its number among those of its feature.
 std::string name_of(const io::PolygonsFile& file, std::size_t polygon) {
-  const auto first = std::ranges::lower_bound(file.features, file.features[polygon]) - file.features.begin();
-  return fmt::format("polygon {} of feature {}", polygon - static_cast<std::size_t>(first), file.features[polygon]);
+  std::size_t first = polygon;
+  while (first > 0 && file.features[first - 1] == file.features[polygon]) --first;
+  return fmt::format("polygon {} of feature {}", polygon - first, file.features[polygon]);
 }
 
 std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem) {

@@ -302,9 +302,9 @@ cadt_status cadt_constrained_values_at_crossings(const cadt_constrained* mesh, c
   return guarded([&] {
     const auto& m = mesh_of(mesh);
     const cadt::PointsView view = points_of(points);
+    if (!has_room(result, capacity, (view.size() + m.added_points().size() / 2) * columns, count)) return;
     if (value_count != 0) require(values, "values");
-    const auto all = cadt::values_at_crossings(view, {values, value_count}, columns, m);
-    if (has_room(result, capacity, all.size(), count)) std::ranges::copy(all, result);
+    std::ranges::copy(cadt::values_at_crossings(view, {values, value_count}, columns, m), result);
   });
 }
 

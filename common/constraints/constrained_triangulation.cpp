@@ -134,8 +134,8 @@ void require_valid(const ConstraintOptions& options) {
   require("crossing", static_cast<int>(options.crossing), static_cast<int>(Crossing::grid));
   require("domain", static_cast<int>(options.domain), static_cast<int>(Domain::seeds));
   if (options.domain == Domain::seeds || (options.holes.empty() && options.regions.empty())) return;
-  throw OptionError(options.holes.empty() ? "regions" : "holes", "these are for Domain::seeds, which is not the domain",
-                    "ConstraintOptions::");
+  throw OptionError(options.holes.empty() ? "regions" : "holes",
+                    "these are for Domain::seeds: set it as the domain, or leave them out", "ConstraintOptions::");
 }
 
 void require_legal_edges(const Options& options) {

@@ -120,8 +120,9 @@ CADT_API cadt_status cadt_constrained_verify(const cadt_constrained* mesh, const
                                              const cadt_constraint_options* constraints, cadt_report** report);
 
 /* `columns` values of each input point, and behind them those at the vertices made for crossings: linear along the
- * first of their two segments. `values` and `result`: a row a point; *count is the number of all, input points x
- * columns + crossings x columns. CADT_INPUT_ERROR if there are not `columns` values for each of the points. */
+ * first of their two segments. `values`: value_count numbers, `columns` for each point. `result`: as many for each
+ * point and each crossing; *count is their number, for which no values need be given. CADT_INPUT_ERROR if there are not
+ * `columns` values for each of the points. */
 CADT_API cadt_status cadt_constrained_values_at_crossings(const cadt_constrained* mesh, const cadt_points* points,
                                                           const double* values, size_t value_count, size_t columns,
                                                           double* result, size_t capacity, size_t* count);

@@ -84,8 +84,9 @@ class CADT_API PolygonsResult {
 /// suffer.
 ///
 /// All views are read only and need to live until the call returns. Small polygons are each the work of one thread of
-/// the device; those of more than 512 points, and those with rings of one or two, of a call of their own (ten
-/// microseconds or more on a CPU). O(n log n) expected for each polygon of n points, O(n^2) if edges cross. Memory: 24
+/// the device; those of more than 512 points of a call of their own. Small ones with rings of one or two different
+/// points, or with coordinates too far apart for the narrow arithmetic, are calls of the host, whatever the device is
+/// (some ten microseconds each). O(n log n) expected for each polygon of n points, O(n^2) if edges cross. Memory: 24
 /// bytes a point for the result; on a GPU at most 300 MB more. Thread-safe. \throws InputError (offsets that descend or
 /// reach behind the points; index() is that of the offset), LimitError, OptionError, OutOfMemory, BackendUnavailable,
 /// Cancelled

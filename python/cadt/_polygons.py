@@ -134,9 +134,9 @@ def polygons(
     Notes
     -----
     Inside is what an odd number of rings goes around; their directions do not matter. A hole of one point is a vertex of
-    the mesh, one of two points an edge. A polygon with a defect has no
-    triangles and is listed in `problems`, the others do not suffer; ``GeoSeries.make_valid`` mends most of them, or
-    `ConstrainedDelaunay` with its crossings. The other parameters are as for `Delaunay`.
+    the mesh, one of two points an edge; the first ring, also of a row of several parts, must have three. A polygon with a
+    defect has no triangles and is listed in `problems`, the others do not suffer; ``GeoSeries.make_valid`` mends most of
+    them, or `ConstrainedDelaunay` with its crossings. The other parameters are as for `Delaunay`.
 
     Examples
     --------

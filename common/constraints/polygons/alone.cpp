@@ -10,6 +10,7 @@
 #include "common/constraints/constraints.hpp"
 #include "common/constraints/polygons/first_edges.hpp"
 #include "common/driver/counters.hpp"
+#include "common/driver/session.hpp"
 
 namespace cadt {
 namespace {
@@ -30,11 +31,8 @@ PolygonAlone with_crossing(std::size_t p, std::int32_t begin, std::span<const st
                       second + begin);
 }
 
-}  // namespace
-
-bool has_outline(const Polygons& polygons, std::size_t p) {
-  const std::size_t ring = polygons.first_ring(p);
-  if (ring == polygons.first_ring(p + 1)) return false;
+/// Whether a ring has three different points.
+bool has_three(const Polygons& polygons, std::size_t ring) {
   const std::size_t begin = polygons.ring(ring), end = polygons.ring(ring + 1);
   const PointsView& points = polygons.points;
   const auto same = [&](std::size_t i, std::size_t j) {
@@ -47,7 +45,37 @@ bool has_outline(const Polygons& polygons, std::size_t p) {
   return third < end;
 }
 
-PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Statistics& statistics) {
+/// For a call of its own. That of the host within one of another device takes nothing of its memory, queue or limit.
+Options options_of(const Context& ctx, Where where) {
+  Options options = ctx.options;
+  if (where == Where::on_host && !is_host(ctx.device)) {
+    options = {};
+    options.backend = Backend::host;
+    options.threads = 1;
+    options.statistics = ctx.options.statistics;
+    options.stop = ctx.options.stop;
+  }
+  options.keep_points = KeepPoints::no;
+  options.order = Order::canonical;
+  options.progress = nullptr;
+  return options;
+}
+
+}  // namespace
+
+bool has_outline(const Polygons& polygons, std::size_t p) {
+  const std::size_t ring = polygons.first_ring(p);
+  return ring != polygons.first_ring(p + 1) && has_three(polygons, ring);
+}
+
+bool has_small_hole(const Polygons& polygons, std::size_t p) {
+  for (std::size_t ring = polygons.first_ring(p) + 1; ring < polygons.first_ring(p + 1); ++ring)
+    if (polygons.ring(ring) != polygons.ring(ring + 1) && !has_three(polygons, ring)) return true;
+  return false;
+}
+
+PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Where where,
+                               Statistics& statistics) {
   const std::size_t begin = polygons.first_point(p), count = polygons.points_of(p, p + 1);
   const auto at = static_cast<std::int32_t>(begin);
   const PointsView points = polygons.points.subview(begin, count);
@@ -60,17 +88,14 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
   for (std::size_t r = polygons.first_ring(p); r <= polygons.first_ring(p + 1); ++r)
     rings.push_back(polygons.rings[r] - static_cast<std::int64_t>(begin));
   if (!has_outline(polygons, p)) {
-    const std::int32_t where = rings.size() > 1 && rings[1] != 0 ? at : -1;
-    return with_problem(p, PolygonStatus::too_few_points, where, where);
+    const std::int32_t begins = rings.size() > 1 && rings[1] != 0 ? at : -1;
+    return with_problem(p, PolygonStatus::too_few_points, begins, begins);
   }
   const std::vector<Segment> segments = ring_segments(rings);
   if (const auto pair = crossing_of_first_edges(points, segments)) return with_crossing(p, at, rings, segments, *pair);
   ConstraintOptions constraints;
   constraints.domain = Domain::even_odd;
-  Options options = ctx.options;
-  options.keep_points = KeepPoints::no;
-  options.order = Order::canonical;
-  options.progress = nullptr;
+  Options options = options_of(ctx, where);
   const std::size_t limit = options.max_memory, taken = ctx.memory.taken();
   if (limit != 0) options.max_memory = limit > taken ? limit - taken : 1;
   try {
@@ -78,7 +103,9 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
     std::vector<std::int32_t> inside = mesh.triangles_inside();
     for (std::int32_t& v : inside) v += at;
     add_counters(statistics, mesh.statistics());
-    statistics.bytes_device_peak = std::max(statistics.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
+    if (where == Where::on_device || is_host(ctx.device))
+      statistics.bytes_device_peak =
+          std::max(statistics.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
     return {p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, std::move(inside)};
   } catch (const CrossingError& error) {
     return with_crossing(p, at, rings, segments, error.pairs().front());

@@ -32,6 +32,9 @@ struct Polygons {
 /// Whether the first ring of polygon p has three different points.
 [[nodiscard]] bool has_outline(const Polygons& polygons, std::size_t p);
 
+/// Whether another ring of polygon p has points, but fewer than three different ones.
+[[nodiscard]] bool has_small_hole(const Polygons& polygons, std::size_t p);
+
 struct PolygonAlone {
   std::size_t number;
   PolygonStatus status;
@@ -39,9 +42,13 @@ struct PolygonAlone {
   std::vector<std::int32_t> triangles;  ///< three indices each of points of all polygons
 };
 
+/// What triangulates a polygon: the device of the call, or the host, which needs less time for a small one than a card
+/// for its launches.
+enum class Where { on_device, on_host };
+
 /// Triangulates polygon p. Holes of one or two points are vertices and edges of its mesh. `statistics` get those of the
 /// call. \throws OutOfMemory with what this and the memory of `ctx` need together
-[[nodiscard]] PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p,
+[[nodiscard]] PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Where where,
                                              Statistics& statistics);
 
 }  // namespace cadt

@@ -81,7 +81,7 @@ class PolygonsCall {
       end = end_of_round(first);
       ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
       if (is_large(first))
-        add(triangulate_alone(ctx_, in_, first, alone_));
+        add(triangulate_alone(ctx_, in_, first, Where::on_device, alone_));
       else
         add_round(first, end);
     }
@@ -103,22 +103,27 @@ class PolygonsCall {
     return end;
   }
 
-  /// The largest of all rounds, and the largest polygon alone.
+  /// The largest of all rounds, and the largest polygons alone.
   struct Sizes {
-    std::size_t points = 0, rings = 0, polygons = 0, scratch_words = 0, alone = 0;
+    std::size_t points = 0, rings = 0, polygons = 0, scratch_words = 0;
+    std::size_t large = 0, left = 0;  ///< points of polygons that are done alone: of large ones, and of small ones
   };
+  /// Whether small polygons that are done alone, by the host, take memory that is limited.
+  [[nodiscard]] bool counts_left() const { return ctx_.options.max_memory != 0 && is_host(ctx_.device); }
   [[nodiscard]] Sizes sizes() const {
     Sizes most;
     for (std::size_t first = 0, end = 0; first < in_.size(); first = end) {
       end = end_of_round(first);
       const std::size_t points = in_.points_of(first, end);
       if (is_large(first)) {
-        most.alone = std::max(most.alone, points);
+        most.large = std::max(most.large, points);
       } else if (points != 0) {
         most.points = std::max(most.points, points);
         most.rings = std::max(most.rings, in_.first_ring(end) - in_.first_ring(first));
         most.polygons = std::max(most.polygons, end - first);
         most.scratch_words = std::max(most.scratch_words, scratch_of(first, end).words);
+        for (std::size_t p = first; p < end && counts_left(); ++p)
+          if (in_.points_of(p, p + 1) > most.left && has_small_hole(in_, p)) most.left = in_.points_of(p, p + 1);
       }
     }
     return most;
@@ -148,11 +153,12 @@ class PolygonsCall {
     const std::size_t kept = triangles + most.scratch_words * word;
     const std::size_t lists = most.rings + (2 + CADT_POLYGON_RESULT_WORDS) * most.polygons;
     const std::size_t rounds = most.points == 0 ? 0 : fixed + kept + input * most.points + lists * word;
-    if (most.alone == 0) return rounds;
-    const bool stars =
-        may_use_stars(traits_of(ctx_.device), ctx_.options) && most.alone >= fewest_for_stars(ctx_.options);
-    const MemoryPlan alone = plan_memory({most.alone, on_host, false, sizeof(double)}, stars, true);
-    return std::max(rounds, kept + alone.bytes);
+    const auto alone = [&](std::size_t points) {
+      const bool stars =
+          may_use_stars(traits_of(ctx_.device), ctx_.options) && points >= fewest_for_stars(ctx_.options);
+      return points == 0 ? 0 : plan_memory({points, on_host, false, sizeof(double)}, stars, true).bytes;
+    };
+    return std::max(rounds + alone(most.left), kept + alone(most.large));
   }
 
   /// Work-items, and the words of memory that one of them needs on a CPU.
@@ -206,9 +212,11 @@ class PolygonsCall {
     if (!direct_ && ends.back() != 0)
       ctx_.device.read(*packed_, 0, result_.triangles.get() + 3 * total(), 3 * std::size_t{ends.back()} * word);
     std::vector<PolygonAlone> alone;
-    for (std::size_t p = 0; p < polygons; ++p)
-      if (is_left(first + p, found[p * CADT_POLYGON_RESULT_WORDS]))
-        alone.push_back(triangulate_alone(ctx_, in_, first + p, alone_));
+    for (std::size_t p = 0; p < polygons; ++p) {
+      if (!is_left(first + p, found[p * CADT_POLYGON_RESULT_WORDS])) continue;
+      ctx_.check("polygons", static_cast<double>(first + p) / static_cast<double>(in_.size()));
+      alone.push_back(triangulate_alone(ctx_, in_, first + p, Where::on_host, alone_));
+    }
     make_room(first, ends, alone);
     auto next = alone.begin();
     for (std::size_t p = 0; p < polygons; ++p) {
@@ -226,7 +234,7 @@ class PolygonsCall {
   }
 
   /// Whether a work-item leaves a small polygon to a call of its own: one with coordinates too far apart for the narrow
-  /// arithmetic, or with a hole of one or two points.
+  /// arithmetic, or with a hole of one or two different points.
   [[nodiscard]] bool is_left(std::size_t p, std::uint32_t state) const {
     return state == CADT_POLYGON_WIDE || (state == CADT_POLYGON_TOO_FEW_POINTS && has_outline(in_, p));
   }
@@ -237,7 +245,7 @@ class PolygonsCall {
     std::int32_t* const begin = result_.triangles.get() + 3 * total();
     std::size_t more = 0, last = ends.back();
     for (const PolygonAlone& polygon : alone) more += polygon.triangles.size();
-    for (auto polygon = alone.rbegin(); polygon != alone.rend(); ++polygon) {
+    for (auto polygon = alone.rbegin(); more != 0 && polygon != alone.rend(); ++polygon) {
       const std::size_t from = ends[polygon->number - first];
       std::copy_backward(begin + 3 * from, begin + 3 * last, begin + 3 * last + more);
       more -= polygon->triangles.size();

@@ -12,8 +12,8 @@
 /* What becomes of a polygon. */
 enum {
   CADT_POLYGON_OK,
-  CADT_POLYGON_TOO_FEW_POINTS, /* a ring with fewer than three different points, or no ring; of the outline, if it has
-                                  them */
+  CADT_POLYGON_TOO_FEW_POINTS, /* a ring has fewer than three different points, or there is no ring (the host asks
+                                  whether it is the first one) */
   CADT_POLYGON_NOT_FINITE,
   CADT_POLYGON_SELF_CROSSING, /* two edges of one ring */
   CADT_POLYGON_RING_CROSSING, /* edges of two rings */
@@ -196,6 +196,7 @@ CADT_FN cadt_u32 cadt_sweep_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_i
   for (cadt_u32 r = polygon->first_ring; r < polygon->end_ring; ++r) {
     const cadt_u32 begin = polygon->ring_begins[r] - polygon->first,
                    end = polygon->ring_begins[r + 1u] - polygon->first;
+    if (begin == end && r != polygon->first_ring) continue; /* a hole without points is nothing */
     if (cadt_add_ring(s, polygon, begin, end)) continue;
     *first = *second = begin == end ? CADT_NONE : begin;
     return CADT_POLYGON_TOO_FEW_POINTS;

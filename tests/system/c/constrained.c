@@ -126,6 +126,9 @@ static void test_crossings(void) {
   CHECK(count == 1 && added[0] == 1 && added[1] == 1 && parents[0] == 0 && parents[1] == 1);
   CHECK_STATUS(CADT_BUFFER_TOO_SMALL, cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 2, rows, 9, &count));
   CHECK(count == 10);
+  count = 0;
+  CHECK_OK(cadt_constrained_values_at_crossings(mesh, &points, NULL, 0, 2, NULL, 0, &count));
+  CHECK(count == 10);
   CHECK_OK(cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 2, rows, 10, &count));
   CHECK(count == 10 && rows[0] == 1 && rows[7] == 90 && rows[8] == 2 && rows[9] == 20);
   CHECK_STATUS(CADT_INPUT_ERROR, cadt_constrained_values_at_crossings(mesh, &points, slopes, 8, 1, rows, 10, &count));

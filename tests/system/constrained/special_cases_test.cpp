@@ -124,9 +124,9 @@ TEST_P(SpecialCases, HolesAndRegionsWithoutSeeds) {
   };
   for (const Domain domain : {Domain::hull, Domain::outer, Domain::even_odd, Domain::nonzero, Domain::layers}) {
     EXPECT_EQ(refused({.domain = domain, .holes = {{0, 0}}}),
-              "ConstraintOptions::holes: these are for Domain::seeds, which is not the domain");
+              "ConstraintOptions::holes: these are for Domain::seeds: set it as the domain, or leave them out");
     EXPECT_EQ(refused({.domain = domain, .regions = {{0, 0, 1}}}),
-              "ConstraintOptions::regions: these are for Domain::seeds, which is not the domain");
+              "ConstraintOptions::regions: these are for Domain::seeds: set it as the domain, or leave them out");
   }
   EXPECT_EQ(refused({.domain = Domain::seeds, .holes = {{0, 0}}, .regions = {{0, 0, 1}}}), "");
 }

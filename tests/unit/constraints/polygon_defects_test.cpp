@@ -109,6 +109,29 @@ TEST_P(PolygonDefects, HolesOfFewPoints) {
       EXPECT_EQ(result.triangles(p++).size(), 6U) << p;
     }
 }
+
+/// What is told before any work is enough, and each polygon that is done alone shows progress.
+TEST_P(PolygonDefects, MemoryAndProgressOfHolesOfFewPoints) {
+  std::mt19937_64 random(3);
+  PolygonSet set;
+  for (int i = 0; i < 300; ++i) set.add({{{0, 0}, {9, 0}, {0, 9}}});
+  set.add({star(random, 500, 0, 0, 5e8, 1e9), {{3, 4}}});
+  for (int i = 0; i < 20; ++i) set.add({{{0, 0}, {9, 0}, {0, 9}}, {{1, 1}, {2, 1}}});
+  Options options = GetParam().options();
+  options.max_memory = 1;
+  try {
+    (void)set.triangulate(options);
+    FAIL() << "a byte is enough";
+  } catch (const OutOfMemory& error) {
+    options.max_memory = error.needed();
+  }
+  std::vector<double> shown;
+  options.progress = [&](const Progress& progress) { shown.push_back(progress.fraction); };
+  const PolygonsResult result = set.triangulate(options);
+  EXPECT_TRUE(result.problems().empty());
+  EXPECT_GE(shown.size(), 21U);
+  EXPECT_TRUE(std::ranges::is_sorted(shown));
+}
 CADT_ON_MAIN_BACKENDS(PolygonDefects);
 
 }  // namespace

@@ -209,7 +209,7 @@ class Changes(WindowTest):
         self.view("--generate", "uniform", "-n", 300, "--size", SIZE)
         self.wait("loaded")
         self.key("F1")  # help
-        self.xdotool("sleep", 1)
+        self.screenshot("S")  # the help is drawn
         self.click(*MIDDLE)
         self.xdotool("sleep", 0.2)
         self.key("Escape", "e")
@@ -358,9 +358,8 @@ class Troubles(WindowTest):
         self.quit()
 
     def fails(self, changes, *says):
-        environment = {**self.environment, **changes}
-        done = subprocess.run([PROGRAM, "view", "--generate", "uniform"], env=environment, cwd=self.folder, capture_output=True,
-                              text=True, timeout=60, check=False)
+        done = subprocess.run([PROGRAM, "view", "--generate", "uniform"], env={**self.environment_of_view(), **changes},
+                              cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(done.returncode, 5, done.stderr)
         for text in says:
             self.assertIn(text, done.stderr)

@@ -71,11 +71,14 @@ class WindowTest(unittest.TestCase):
             process.terminate()
         process.wait()
 
+    def environment_of_view(self):
+        more = dict(setting.split("=", 1) for setting in os.environ.get("CADT_VIEW_ENVIRONMENT", "").split(";") if setting)
+        return {**self.environment, **more}
+
     def view(self, *arguments):
         """Opens the window and gives it the keyboard."""
-        more = dict(setting.split("=", 1) for setting in os.environ.get("CADT_VIEW_ENVIRONMENT", "").split(";") if setting)
         self.process = subprocess.Popen([PROGRAM, "view", "--log", "--backend", "host", *map(str, arguments)], cwd=self.folder,
-                                        env={**self.environment, **more}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                        env=self.environment_of_view(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.process.communicate)
         self.addCleanup(self.stop, self.process)

@@ -4,6 +4,7 @@
 #include "common/verify/host/exact_sign.hpp"
 #include "tests/support/exact_mesh.hpp"
 #include "tests/support/oracle_constrained.hpp"
+#include "tests/support/sanitizers.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gtest/gtest.h>
@@ -244,6 +245,7 @@ TEST(ExactCrossingsOfAdversaries, AHubThatSegmentsPass) {
 class Deadline {
  public:
   explicit Deadline(double seconds) {
+    if (CADT_SANITIZED) seconds *= 10;
     options_.stop = source_.get_token();
     options_.progress = [this, seconds, begin = std::chrono::steady_clock::now()](const Progress&) {
       ++told;

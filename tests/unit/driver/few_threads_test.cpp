@@ -9,16 +9,9 @@
 #include <random>
 #include <vector>
 
-// Sanitizers need addresses of their own for each thread.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CADT_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define CADT_SANITIZED 1
-#endif
-#endif
+#include "tests/support/sanitizers.hpp"
 
-#if defined(__GLIBC__) && !defined(CADT_SANITIZED)
+#if defined(__GLIBC__) && !CADT_SANITIZED
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -46,9 +46,9 @@ bool has_three(const Polygons& polygons, std::size_t ring) {
 }
 
 /// For a call of its own. That of the host within one of another device takes nothing of its memory, queue or limit.
-Options options_of(const Context& ctx, Where where) {
+Options options_of(const Context& ctx, bool leaves_device) {
   Options options = ctx.options;
-  if (where == Where::on_host && !is_host(ctx.device)) {
+  if (leaves_device) {
     options = {};
     options.backend = Backend::host;
     options.threads = 1;
@@ -74,8 +74,7 @@ bool has_small_hole(const Polygons& polygons, std::size_t p) {
   return false;
 }
 
-PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Where where,
-                               Statistics& statistics) {
+PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Statistics& statistics) {
   const std::size_t begin = polygons.first_point(p), count = polygons.points_of(p, p + 1);
   const auto at = static_cast<std::int32_t>(begin);
   const PointsView points = polygons.points.subview(begin, count);
@@ -95,7 +94,8 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
   if (const auto pair = crossing_of_first_edges(points, segments)) return with_crossing(p, at, rings, segments, *pair);
   ConstraintOptions constraints;
   constraints.domain = Domain::even_odd;
-  Options options = options_of(ctx, where);
+  const bool leaves_device = count <= most_swept && !is_host(ctx.device);
+  Options options = options_of(ctx, leaves_device);
   const std::size_t limit = options.max_memory, taken = ctx.memory.taken();
   if (limit != 0) options.max_memory = limit > taken ? limit - taken : 1;
   try {
@@ -103,7 +103,7 @@ PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size
     std::vector<std::int32_t> inside = mesh.triangles_inside();
     for (std::int32_t& v : inside) v += at;
     add_counters(statistics, mesh.statistics());
-    if (where == Where::on_device || is_host(ctx.device))
+    if (!leaves_device)
       statistics.bytes_device_peak =
           std::max(statistics.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
     return {p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, std::move(inside)};

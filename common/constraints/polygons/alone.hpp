@@ -14,6 +14,10 @@
 
 namespace cadt {
 
+/// Points of a small polygon at most. A work-item takes about half a microsecond a point on a CPU and some on a GPU,
+/// where the last polygon should not keep all others waiting.
+constexpr std::size_t most_swept = 512;
+
 /// Polygons and their rings, of the caller.
 struct Polygons {
   PointsView points;
@@ -42,13 +46,10 @@ struct PolygonAlone {
   std::vector<std::int32_t> triangles;  ///< three indices each of points of all polygons
 };
 
-/// What triangulates a polygon: the device of the call, or the host, which needs less time for a small one than a card
-/// for its launches.
-enum class Where { on_device, on_host };
-
-/// Triangulates polygon p. Holes of one or two points are vertices and edges of its mesh. `statistics` get those of the
-/// call. \throws OutOfMemory with what this and the memory of `ctx` need together
-[[nodiscard]] PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p, Where where,
+/// Triangulates polygon p: a small one by the host, which needs less time for it than a card for its launches. Holes of
+/// one or two points are vertices and edges of its mesh. `statistics` get those of the call. \throws OutOfMemory with
+/// what this and the memory of `ctx` need together
+[[nodiscard]] PolygonAlone triangulate_alone(Context& ctx, const Polygons& polygons, std::size_t p,
                                              Statistics& statistics);
 
 }  // namespace cadt

@@ -34,9 +34,6 @@ struct PolygonsResult::Data {
 
 namespace {
 
-/// A work-item takes about half a microsecond a point on a CPU and some on a GPU, where the last polygon should not
-/// keep all others waiting.
-constexpr std::size_t most_swept = 512;
 /// Points of a round. On CPUs its arrays stay in the cache; on GPUs there are more polygons than lanes, and memory for
 /// a million points takes 250 MB.
 constexpr std::size_t points_of_cpu_thread = std::size_t{1} << 14, points_of_gpu = std::size_t{1} << 20;
@@ -81,7 +78,7 @@ class PolygonsCall {
       end = end_of_round(first);
       ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
       if (is_large(first))
-        add(triangulate_alone(ctx_, in_, first, Where::on_device, alone_));
+        add(triangulate_alone(ctx_, in_, first, alone_));
       else
         add_round(first, end);
     }
@@ -215,7 +212,7 @@ class PolygonsCall {
     for (std::size_t p = 0; p < polygons; ++p) {
       if (!is_left(first + p, found[p * CADT_POLYGON_RESULT_WORDS])) continue;
       ctx_.check("polygons", static_cast<double>(first + p) / static_cast<double>(in_.size()));
-      alone.push_back(triangulate_alone(ctx_, in_, first + p, Where::on_host, alone_));
+      alone.push_back(triangulate_alone(ctx_, in_, first + p, alone_));
     }
     make_room(first, ends, alone);
     auto next = alone.begin();

@@ -57,6 +57,7 @@ TEST_P(PolygonDefects, HolesOfFewPoints) {
   const Ring square = {{0, 0}, {9, 0}, {9, 9}, {0, 9}}, dot = {{3, 4}}, line = {{1, 1}, {1, 8}},
              bow_tie = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
   const double far = 0x1p600;
+  std::mt19937_64 random(9);
   struct Case {
     std::vector<Ring> rings;
     std::size_t triangles;
@@ -82,7 +83,7 @@ TEST_P(PolygonDefects, HolesOfFewPoints) {
       {{{{0, 0}, {1, 1}, {3, 3}}, dot}, 0, PolygonStatus::zero_area},
       {{dot}, 0, PolygonStatus::too_few_points},
       {{line, square}, 0, PolygonStatus::too_few_points},
-      {{star(*std::make_unique<std::mt19937_64>(9), 600, 0, 0, 5e8, 1e9), dot}, 600},
+      {{star(random, 600, 0, 0, 5e8, 1e9), dot}, 600},
   };
   PolygonSet set;
   for (int copy = 0; copy < 3; ++copy)
